@@ -186,6 +186,24 @@ test("a source fills the same textures again, frame by frame", async () => {
   assert.deepEqual(heard, ["texture", "complete", "texture", "texture"]);
 });
 
+test("textures of films stay in words where a draw sums them and the device has the layers", () => {
+  const size = [64, 64];
+  const plan = (channels, films, layers = 256, count = 12) => {
+    const means = [{ size, channels, pieces: channels, tenBits: true }];
+    const bases = [{ size, grid: size, channels, count, tenBits: true }];
+    const { words, usable } = built.makePlan(
+      { atlas: size, means, bases, films, rays: true, geometry: 0 },
+      { side: 4096, layers, memory: 1e9 },
+    );
+    return [words, usable];
+  };
+  assert.deepEqual(plan(2, true), [true, 12]);
+  assert.deepEqual(plan(2, false), [false, 12]);
+  assert.deepEqual(plan(2, true, 23), [false, 12]);
+  assert.deepEqual(plan(16, true, 256), [true, 12]);
+  assert.deepEqual(plan(17, true, 256), [false, 12], "a file may have so many, and no draw would sum four textures of them");
+});
+
 test("opacity is drawn when it comes, and not with each frame", () => {
   const { source, fake, draw } = makeField({ sheets: [1] });
   draw(...NEAR);

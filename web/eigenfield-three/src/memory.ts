@@ -5,6 +5,7 @@ const COMPOSED = bytesOf({ components: 4, halves: true }); // of a texel
 export const PICTURE: Format = { components: 4, halves: false }; // as browsers decode it
 export const WORDS: Format = { components: 2, halves: false }; // the two bytes of a code of more than 8 bits
 const REDUCED: Format = { components: 2, halves: true }; // a value, and whether it is of a chart
+const MOST_WORDS = 16; // channels in words, of which one draw sums four textures
 export const MAP_SIDE = 129; // nodes of a weight map along X and Y
 const MIB = 2 ** 20;
 const ROOM_SHARE = 1 / 64; // of the memory, for rows of a picture that are packed at once
@@ -124,7 +125,9 @@ export function makePlan(needs: Needs, limits: DeviceLimits): Plan {
   const hasRoom = (choice: Choice, count: number): boolean =>
     bytes(choice, count) + onTheWay(needs, choice, limits.memory) <= limits.memory;
   const largest = Math.max(1, ...needs.atlas, ...needs.bases.flatMap(({ size }) => size));
-  const inWords = needs.films && total * channels <= limits.layers ? [{ ...WHOLE, words: true }] : [];
+  const widest = Math.max(channels, ...needs.means.map((mean) => mean.channels));
+  const fits = total * channels <= limits.layers && widest <= MOST_WORDS;
+  const inWords = needs.films && fits ? [{ ...WHOLE, words: true }] : [];
   const possible = [...inWords, ...CHOICES].filter(({ meanDown }) => largest / meanDown <= limits.side);
   let usable = possible.length ? most : 0;
   let choice = possible.find((one) => hasRoom(one, usable));

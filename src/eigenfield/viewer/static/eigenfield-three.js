@@ -2769,7 +2769,7 @@ function xo(e) {
 	};
 }
 // eigenfield-three/src/memory.ts
-var So = 4 / 3, Co = Ao({
+var So = 4 / 3, Co = jo({
 	components: 4,
 	halves: !0
 }), wo = {
@@ -2781,34 +2781,34 @@ var So = 4 / 3, Co = Ao({
 }, Eo = {
 	components: 2,
 	halves: !0
-}, Do = 2 ** 20, Oo = 1 / 64, ko = 34;
-function Ao({ components: e, halves: t }) {
+}, Do = 16, Oo = 2 ** 20, ko = 1 / 64, Ao = 34;
+function jo({ components: e, halves: t }) {
 	return (e > 2 ? 4 : e) * (t ? 2 : 1);
 }
-function jo() {
+function Mo() {
 	let e = typeof navigator > "u" ? void 0 : navigator, t = e?.deviceMemory, n = e?.userAgent ?? "";
-	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && Mo(e) ? Math.min(t ?? 4, 6) * 128 * Do : Math.min(t ?? 8, 8) * 256 * Do;
+	return /Mobi|Android|iPhone|iPad|Quest/i.test(n) || /Macintosh/.test(n) && No(e) ? Math.min(t ?? 4, 6) * 128 * Oo : Math.min(t ?? 8, 8) * 256 * Oo;
 }
-function Mo(e) {
+function No(e) {
 	return (e?.maxTouchPoints ?? 0) > 1;
 }
 function X([e, t], n) {
 	return [Math.ceil(e / n), Math.ceil(t / n)];
 }
-function No(e, t) {
+function Po(e, t) {
 	let [n, r] = X(e, t);
 	return n * r;
 }
-function Po(e) {
+function Fo(e) {
 	return Math.ceil(e / 4);
 }
-function Fo(e, t) {
-	return t * Io(e);
-}
-function Io(e) {
-	return Math.max(1, Math.ceil(e / 4));
+function Io(e, t) {
+	return t * Lo(e);
 }
 function Lo(e) {
+	return Math.max(1, Math.ceil(e / 4));
+}
+function Ro(e) {
 	let { atlas: t, means: n, bases: r } = e, i = [
 		t,
 		...n.map(({ size: e }) => e),
@@ -2816,7 +2816,7 @@ function Lo(e) {
 	];
 	return [...new Map(i.map((e) => [e.join(), e])).values()];
 }
-var Ro = [
+var zo = [
 	1,
 	1.5,
 	2,
@@ -2826,12 +2826,12 @@ var Ro = [
 	8,
 	12,
 	16
-], zo = {
+], Bo = {
 	meanDown: 1,
 	scaleDown: 1,
 	halves: !0,
 	words: !1
-}, Bo = [zo, ...Ro.flatMap((e) => [
+}, Vo = [Bo, ...zo.flatMap((e) => [
 	1,
 	1.5,
 	2
@@ -2841,54 +2841,54 @@ var Ro = [
 	halves: !1,
 	words: !1
 })))];
-function Vo(e, t) {
-	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => Ho(e, t.meanDown) + e.geometry + Uo(e, t, n), o = (n, r) => a(n, r) + Ko(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = [...e.films && n * r <= t.layers ? [{
-		...zo,
+function Ho(e, t) {
+	let n = Math.max(0, ...e.bases.map(({ count: e }) => e)), r = Math.max(1, ...e.bases.map((e) => e.channels)), i = Math.min(n, 4 * Math.floor(t.layers / r)), a = (t, n) => Uo(e, t.meanDown) + e.geometry + Wo(e, t, n), o = (n, r) => a(n, r) + qo(e, n, t.memory) <= t.memory, s = Math.max(1, ...e.atlas, ...e.bases.flatMap(({ size: e }) => e)), c = Math.max(r, ...e.means.map((e) => e.channels)), l = n * r <= t.layers && c <= Do, u = [...e.films && l ? [{
+		...Bo,
 		words: !0
-	}] : [], ...Bo].filter(({ meanDown: e }) => s / e <= t.side), l = c.length ? i : 0, u = c.find((e) => o(e, l));
-	for (; !u && l > 0; l--) u = c.find((e) => o(e, l - 1));
-	u ??= Bo.at(-1);
-	let d = qo({
-		...u,
-		usable: l
-	}, e), f = Jo(d, e, t);
+	}] : [], ...Vo].filter(({ meanDown: e }) => s / e <= t.side), d = u.length ? i : 0, f = u.find((e) => o(e, d));
+	for (; !f && d > 0; d--) f = u.find((e) => o(e, d - 1));
+	f ??= Vo.at(-1);
+	let p = Jo({
+		...f,
+		usable: d
+	}, e), m = Yo(p, e, t);
 	return {
-		...u,
-		usable: l,
-		bytes: a(u, l),
-		reductions: d,
-		limitation: f
+		...f,
+		usable: d,
+		bytes: a(f, d),
+		reductions: p,
+		limitation: m
 	};
 }
-function Ho(e, t) {
+function Uo(e, t) {
 	let n = e.means.map(({ size: e, channels: n, tenBits: r, opacity: i }) => {
 		let a = i ? Co : 0;
-		return (Ao({
+		return (jo({
 			components: n,
 			halves: r
-		}) * Po(n) + a) * No(e, t);
-	}), r = Lo({
+		}) * Fo(n) + a) * Po(e, t);
+	}), r = Ro({
 		...e,
 		means: e.means.filter(({ opacity: e }) => !e)
 	}).map((n) => {
 		let r = n.join() === e.atlas.join() ? So : 1, i = e.rays && e.bases.some(({ grid: e }) => e.join() === n.join());
-		return Co * No(n, t) * (r + +!!i);
+		return Co * Po(n, t) * (r + +!!i);
 	});
 	return Math.round([...n, ...r].reduce((e, t) => e + t, 0));
 }
-function Uo({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
+function Wo({ bases: e, rays: t }, { scaleDown: n, halves: r }, i) {
 	return e.reduce((e, a) => {
 		let o = Math.min(i, a.count);
 		if (!o) return e;
-		let s = t ? Io(o) * 129 * 129 * Co : 0;
-		return e + Ao({
+		let s = t ? Lo(o) * 129 * 129 * Co : 0;
+		return e + jo({
 			components: o,
 			halves: r && a.tenBits
-		}) * Fo(o, a.channels) * No(a.size, n) + s;
+		}) * Io(o, a.channels) * Po(a.size, n) + s;
 	}, 0);
 }
-function Wo({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
-	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = Go([...a, ...o].map(({ size: e }) => e)), l = Math.floor(Oo * i / (Ao(wo) * s)), u = [s, Math.min(c, Math.max(ko, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
+function Go({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
+	let a = e.filter(({ pieces: e, tenBits: t }) => e > 1 || t || n > 1), o = t.filter(({ count: e }) => e > 0), [s, c] = Ko([...a, ...o].map(({ size: e }) => e)), l = Math.floor(ko * i / (jo(wo) * s)), u = [s, Math.min(c, Math.max(Ao, l))], d = [...n > 1 ? a.map((e) => X(e.size, n)) : [], ...r > 1 ? o.map((e) => X(e.size, r)) : []];
 	return {
 		picture: {
 			size: u,
@@ -2899,20 +2899,20 @@ function Wo({ means: e, bases: t }, { meanDown: n, scaleDown: r }, i) {
 			format: To
 		} : null,
 		smaller: d.length ? {
-			size: Go(d),
+			size: Ko(d),
 			format: Eo
 		} : null
 	};
 }
-function Go(e) {
+function Ko(e) {
 	return [Math.max(1, ...e.map(([e]) => e)), Math.max(1, ...e.map(([, e]) => e))];
 }
-function Ko(e, t, n) {
+function qo(e, t, n) {
 	if (t.words) return 0;
-	let r = Object.values(Wo(e, t, n)).map((e) => e ? Ao(e.format) * No(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...Lo(e).map((e) => No(e, 1))) : 0;
+	let r = Object.values(Go(e, t, n)).map((e) => e ? jo(e.format) * Po(e.size, 1) : 0), i = t.scaleDown > 1 ? Math.max(...Ro(e).map((e) => Po(e, 1))) : 0;
 	return [...r, i].reduce((e, t) => e + t, 0);
 }
-function qo({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
+function Jo({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 	let a = Math.max(0, ...i.bases.map(({ count: e }) => e)), o = [];
 	return e < a && o.push({
 		kind: "count",
@@ -2926,24 +2926,24 @@ function qo({ usable: e, meanDown: t, scaleDown: n, halves: r }, i) {
 		percent: Math.round(100 / t)
 	}), o;
 }
-function Jo(e, t, n) {
+function Yo(e, t, n) {
 	if (!e.length) return null;
-	let r = e.map((e) => e.kind === "count" ? `${e.part} of ${e.whole} eigen textures are drawn` : e.kind === "bits" ? "eigen textures have 8 bits" : `${e.kind === "mean" ? "the mean texture has" : "eigen textures have"} ${e.percent} % of ${e.kind === "mean" ? "its" : "their"} width and height`), i = Ho(t, 1) + Uo(t, zo, Infinity) + Ko(t, zo, n.memory) + t.geometry, a = i > n.memory ? `the scene needs ${Yo(i)} MB of graphics memory and ${Yo(n.memory)} MB may be used` : "this device's graphics allow no more";
-	return `${Xo(r.join(", "))}: ${a}.`;
-}
-function Yo(e) {
-	return (e / 1e6).toFixed(+(e < 1e7));
+	let r = e.map((e) => e.kind === "count" ? `${e.part} of ${e.whole} eigen textures are drawn` : e.kind === "bits" ? "eigen textures have 8 bits" : `${e.kind === "mean" ? "the mean texture has" : "eigen textures have"} ${e.percent} % of ${e.kind === "mean" ? "its" : "their"} width and height`), i = Uo(t, 1) + Wo(t, Bo, Infinity) + qo(t, Bo, n.memory) + t.geometry, a = i > n.memory ? `the scene needs ${Xo(i)} MB of graphics memory and ${Xo(n.memory)} MB may be used` : "this device's graphics allow no more";
+	return `${Zo(r.join(", "))}: ${a}.`;
 }
 function Xo(e) {
+	return (e / 1e6).toFixed(+(e < 1e7));
+}
+function Zo(e) {
 	return e.charAt(0).toUpperCase() + e.slice(1);
 }
 // ../src/eigenfield/rendering/shaders/compose.glsl?raw
-var Zo = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform bool words;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = 0; entry < entries; group++) {\n    int layer = words ? group / 4 : group;\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(firstGroup + layer)), 0.0);\n    if (rayWeights && words) weights = vec4(weights[group % 4]);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", Qo = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", $o = 2, es = `
+var Qo = "\n#define LAYERS 64\n#define LEVEL 1e-4\n#define MOST 6e4\n#define REACH 2\nuniform sampler2DArray stored;\nuniform int firstLayer;\nuniform int sharing;\nuniform bool words;\nuniform int channels;\nuniform int entries;\nuniform vec4 scale[LAYERS];\nuniform vec4 bias[LAYERS];\nuniform vec3 colours[LAYERS];\nuniform bool rayWeights;\nuniform sampler2DArray weightMaps;\nuniform int firstGroup;\nuniform sampler2D places;\nuniform vec2 beside;\nuniform vec3 eye;\nuniform sampler2D coarse;\nvec4 placeOf(vec3 point) {\n  float height = point.z < 0.0 ? min(point.z, -LEVEL) : max(point.z, LEVEL);\n  return vec4(clamp(vec3(point.xy, 1.0) / height, -MOST, MOST), 1.0);\n}\nvec2 viewCoordinates(vec4 place) {\n  float part = 1.0 - eye.z * place.z;\n  bool meets = place.w > 0.0 && part > 1e-5;\n  return clamp(meets ? (eye.xy - eye.z * place.xy) / part : eye.xy, -1.0, 1.0);\n}\nfloat codeOf(vec2 shift) { return shift.x + float(REACH) + float(2 * REACH + 1) * (shift.y + float(REACH)); }\nvec2 shiftOf(vec4 place) {\n  int code = int(place.w + 0.5) - 1;\n  return code < 0 ? vec2(0.0) : vec2(code % (2 * REACH + 1) - REACH, code / (2 * REACH + 1) - REACH);\n}\nvec4 sumTextures(vec2 own) {\n  vec2 nodes = vec2(textureSize(weightMaps, 0).xy);\n  vec4 place = rayWeights || beside.x > 0.0 ? texelFetch(places, ivec2(gl_FragCoord.xy), 0) : vec4(0.0);\n  vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);\n  own -= beside * shiftOf(place);\n  vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;\n  vec4 weights = vec4(1.0);\n  vec3 sum = vec3(0.0);\n  int entry = 0;\n  for (int group = 0; entry < entries; group++) {\n    int layer = words ? group / 4 : group;\n    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(firstGroup + layer)), 0.0);\n    if (rayWeights && words) weights = vec4(weights[group % 4]);\n    for (int channel = 0; channel < channels; channel++) {\n      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];\n      sum += colours[channel] * dot(weights, four);\n      entry++;\n    }\n  }\n  return vec4(sum, 0.0);\n}\nvec4 finerValue(vec2 uv) { return readCubic(coarse, uv * vec2(textureSize(coarse, 0)) - 0.5); }\nvec4 finerOpacity(vec2 uv) { return vec4(vec3(0.0), finerValue(uv).r); }\n", $o = "\nvec4 catmullRom(float f) {\n  float f2 = f * f, f3 = f2 * f;\n  return 0.5 * vec4(2.0 * f2 - f3 - f, 3.0 * f3 - 5.0 * f2 + 2.0, 4.0 * f2 - 3.0 * f3 + f, f3 - f2);\n}\nvec4 readCubic(sampler2D source, vec2 texel) {\n  ivec2 last = textureSize(source, 0) - 1;\n  ivec2 base = ivec2(floor(texel));\n  vec2 f = texel - vec2(base);\n  vec4 across = catmullRom(f.x), down = catmullRom(f.y);\n  vec4 sum = vec4(0.0);\n  for (int row = 0; row < 4; row++) {\n    vec4 line = vec4(0.0);\n    for (int column = 0; column < 4; column++) {\n      ivec2 at = clamp(base + ivec2(column, row) - 1, ivec2(0), last);\n      line += across[column] * texelFetch(source, at, 0);\n    }\n    sum += down[row] * line;\n  }\n  return sum;\n}\n", es = 2, ts = `
 precision highp float;
 precision highp int;
 precision highp sampler2D;
 precision highp sampler2DArray;
-${Qo}${Zo}`, ts = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", ns = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", rs = `${es}
+${$o}${Qo}`, ns = "\nprecision highp float;\nuniform vec4 rectangle; // of the target: left, top, right, bottom in 0..1\nin vec3 position;\nout vec2 own;\nvoid main() {\n  own = position.xy;\n  gl_Position = vec4(2.0 * mix(rectangle.xy, rectangle.zw, position.xy) - 1.0, 0.0, 1.0);\n}\n", rs = "\nprecision highp float;\nuniform vec2 texel;     // of the target, in clip space\nuniform vec2 shifts[SHIFTS];\nin vec2 position;       // texture coordinates\nin vec3 onPlane;\nout vec3 point;\nflat out vec2 shift;\nvoid main() {\n  point = onPlane;\n  shift = shifts[gl_InstanceID];\n  gl_Position = vec4(2.0 * position - 1.0 + texel * shift, 0.0, 1.0);\n}\n", is = `${ts}
 in vec3 point;
 flat in vec2 shift;
 out vec4 place;
@@ -2951,12 +2951,12 @@ void main() {
   place = placeOf(point);
   place.w += codeOf(shift);
 }
-`, is = "sumTextures", as = "finerValue", os = "finerOpacity";
-function ss(n, r, i) {
+`, as = "sumTextures", os = "finerValue", ss = "finerOpacity";
+function cs(n, r, i) {
 	let o = new O({
 		glslVersion: h,
-		vertexShader: ts,
-		fragmentShader: `${es}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
+		vertexShader: ns,
+		fragmentShader: `${ts}in vec2 own;\nout vec4 colour;\nvoid main() { colour = ${n}(own); }\n`,
 		uniforms: {
 			rectangle: { value: new ae(...r) },
 			...i
@@ -2992,7 +2992,7 @@ function ss(n, r, i) {
 	let c = new S(s, o);
 	return c.frustumCulled = !1, c;
 }
-function cs([e, t], n) {
+function ls([e, t], n) {
 	return new oe(e, t, {
 		type: g,
 		depthBuffer: !1,
@@ -3001,7 +3001,7 @@ function cs([e, t], n) {
 		magFilter: n ? y : w
 	});
 }
-function ls(e, t) {
+function us(e, t) {
 	let n = fo(e.right, e.up), r = [
 		t[0] - e.origin[0],
 		t[1] - e.origin[1],
@@ -3009,15 +3009,15 @@ function ls(e, t) {
 	];
 	return [...lo(e, t), Y(r, n) / (Math.max(...e.extent) || 1)];
 }
-var us = Array.from({ length: 5 }, (e, t) => t - $o), ds = us.flatMap((e) => us.map((t) => new ie(t, e))).sort((e, t) => t.lengthSq() - e.lengthSq());
-function fs(e) {
+var ds = Array.from({ length: 5 }, (e, t) => t - es), fs = ds.flatMap((e) => ds.map((t) => new ie(t, e))).sort((e, t) => t.lengthSq() - e.lengthSq());
+function ps(e) {
 	return new O({
 		glslVersion: h,
-		vertexShader: ns.replace("SHIFTS", String(ds.length)),
-		fragmentShader: rs,
+		vertexShader: rs.replace("SHIFTS", String(fs.length)),
+		fragmentShader: is,
 		uniforms: {
 			texel: { value: new ie(2 / e.width, 2 / e.height) },
-			shifts: { value: ds }
+			shifts: { value: fs }
 		},
 		side: u,
 		blending: T,
@@ -3025,31 +3025,31 @@ function fs(e) {
 		depthWrite: !1
 	});
 }
-function ps(t, n, r) {
+function ms(t, n, r) {
 	let { index: i } = t, a = t.getAttribute("position"), o = t.getAttribute("uv"), s = new Float32Array(3 * a.count), c = new Float32Array(2 * a.count);
-	for (let e = 0; e < a.count; e++) s.set(ls(n, [
+	for (let e = 0; e < a.count; e++) s.set(us(n, [
 		a.getX(e),
 		a.getY(e),
 		a.getZ(e)
 	]), 3 * e), c.set([o.getX(e), o.getY(e)], 2 * e);
 	let l = new v();
-	l.setAttribute("position", new e(c, 2)), l.setAttribute("onPlane", new e(s, 3)), l.setIndex(i && new e(i.array, 1)), l.instanceCount = ds.length, l.boundingSphere = new te();
+	l.setAttribute("position", new e(c, 2)), l.setAttribute("onPlane", new e(s, 3)), l.setIndex(i && new e(i.array, 1)), l.instanceCount = fs.length, l.boundingSphere = new te();
 	let u = new S(l, r);
 	return u.frustumCulled = !1, u;
 }
-var ms = new i(0), hs = new i();
-function gs(e, t, n) {
+var hs = new i(0), gs = new i();
+function _s(e, t, n) {
 	let r = e.getRenderTarget(), [i, a] = [e.getActiveCubeFace(), e.getActiveMipmapLevel()], { autoClear: o, info: s } = e, [c, l, u] = [
 		e.xr.enabled,
 		e.shadowMap.autoUpdate,
 		e.getClearAlpha()
 	], [d, f] = [s.render.frame, s.autoReset];
-	e.getClearColor(hs), e.setClearColor(ms, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(hs, u), e.setRenderTarget(r, i, a);
+	e.getClearColor(gs), e.setClearColor(hs, 0), e.autoClear = e.xr.enabled = e.shadowMap.autoUpdate = s.autoReset = !1, n(), s.render.frame = d, Object.assign(s, { autoReset: f }), Object.assign(e, { autoClear: o }), e.xr.enabled = c, e.shadowMap.autoUpdate = l, e.setClearColor(gs, u), e.setRenderTarget(r, i, a);
 	let { viewport: p } = t;
 	p && e.state.viewport(p);
 }
 // eigenfield-three/src/composer.ts
-var _s = {
+var vs = {
 	version: 0,
 	mean: !0,
 	opacity: 0,
@@ -3059,7 +3059,7 @@ var _s = {
 	eye: null,
 	places: 0,
 	maps: null
-}, vs = class {
+}, ys = class {
 	snaps;
 	surface;
 	plane;
@@ -3070,14 +3070,14 @@ var _s = {
 	camera = new n();
 	constructor(e, t, n, r, i, a, o) {
 		this.snaps = i, this.surface = a, this.plane = o;
-		let [s, ...c] = Lo({
+		let [s, ...c] = Ro({
 			atlas: e,
 			means: t.filter(({ basis: e }) => !e).map(({ grid: e }) => ({ size: e })),
 			bases: t.filter(({ basis: e }) => e)
 		}), l = (e, n) => {
-			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => xs(t, i ? X(e, r) : null)), o = new k();
+			let a = t.filter(({ grid: t }) => t.join() === e.join()).flatMap((t) => Ss(t, i ? X(e, r) : null)), o = new k();
 			return a.forEach(({ quad: e }, t) => o.add(Object.assign(e, { renderOrder: t }))), {
-				target: cs(X(e, r), n),
+				target: ls(X(e, r), n),
 				scene: o,
 				steps: a,
 				places: null
@@ -3085,7 +3085,7 @@ var _s = {
 		}, u = l(s ?? e, !0);
 		this.grids = c.map((e) => l(e, !1));
 		for (let { target: e } of this.grids) {
-			let t = ss(as, [
+			let t = cs(os, [
 				0,
 				0,
 				1,
@@ -3093,24 +3093,24 @@ var _s = {
 			], { coarse: { value: e.texture } });
 			u.scene.add(Object.assign(t, { renderOrder: u.scene.children.length }));
 		}
-		this.grids.push(u), this.opacity = n && ys(n, r);
+		this.grids.push(u), this.opacity = n && bs(n, r);
 	}
 	get texture() {
 		return this.grids.at(-1)?.target.texture ?? null;
 	}
 	compose(e, t, n) {
-		this.composed && ws(this.composed, n) || (this.composed = n, gs(e, t, () => {
+		this.composed && Ts(this.composed, n) || (this.composed = n, _s(e, t, () => {
 			n.opacity > this.opacityDrawn && this.drawOpacity(e, n.opacity);
 			for (let t of this.grids) {
 				(n.eye !== null && t.steps.some(({ part: e }) => e.basis) || this.snaps) && this.findPlaces(e, t, n.places);
-				for (let e of t.steps) Ss(e, t.places?.target.texture ?? null, n);
+				for (let e of t.steps) Cs(e, t.places?.target.texture ?? null, n);
 				this.draw(e, t.scene, t.target, this.opacityDrawn > 0 && t === this.grids.at(-1));
 			}
 		}));
 	}
 	dispose() {
-		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), t?.material.dispose(), bs(n);
-		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(bs);
+		for (let { target: e, places: t, scene: n } of this.grids) e.dispose(), t?.target.dispose(), t?.material.dispose(), xs(n);
+		this.opacity?.target.dispose(), this.opacity && [this.opacity.sum, this.opacity.finer].forEach(xs);
 	}
 	drawOpacity(e, t) {
 		let [n, r] = [this.grids.at(-1), this.opacity];
@@ -3118,7 +3118,7 @@ var _s = {
 	}
 	findPlaces(e, t, n) {
 		if (t.places && t.places.version >= n) return;
-		let r = t.places?.target ?? cs([t.target.width, t.target.height], !1), i = t.places?.material ?? fs(r), a = ps(this.surface.geometry, this.plane, i);
+		let r = t.places?.target ?? ls([t.target.width, t.target.height], !1), i = t.places?.material ?? ps(r), a = ms(this.surface.geometry, this.plane, i);
 		this.draw(e, new k().add(a), r), a.geometry.dispose(), t.places = {
 			target: r,
 			material: i,
@@ -3131,11 +3131,11 @@ var _s = {
 		r && i.colorMask(!0, !0, !0, !1), e.clear(!0, !1, !1), r && i.colorMask(!0, !0, !0, !0), e.render(t, this.camera);
 	}
 };
-function ys(e, t) {
-	let n = cs(X(e.grid, t), !1), r = xs(e, null);
-	for (let e of r) Ss(e, null, _s);
+function bs(e, t) {
+	let n = ls(X(e.grid, t), !1), r = Ss(e, null);
+	for (let e of r) Cs(e, null, vs);
 	let [i, a] = [new k(), new k()];
-	return i.add(...r.map(({ quad: e }) => e)), a.add(ss(os, [
+	return i.add(...r.map(({ quad: e }) => e)), a.add(cs(ss, [
 		0,
 		0,
 		1,
@@ -3146,17 +3146,17 @@ function ys(e, t) {
 		finer: a
 	};
 }
-function bs(e) {
+function xs(e) {
 	for (let { geometry: t, material: n } of e.children) t.dispose(), n.dispose();
 }
-function xs(e, t) {
+function Ss(e, t) {
 	let [n, r, i, a] = e.rectangle, o = t && new ie(1 / ((i - n) * t[0]), 1 / ((a - r) * t[1])), s = e.colours.length, [c, l] = [e.scale.length / (4 * s), Math.floor(64 / s)], u = e.words ? 4 * Math.floor(l / 4) : l, d = [];
 	for (let t = 0; t < c; t += u) {
 		let n = Array.from({ length: 64 }, (t, n) => new A(...e.colours[n] ?? [
 			0,
 			0,
 			0
-		])), r = e.basis || e.words ? 1 : 4, i = ss(is, e.rectangle, {
+		])), r = e.basis || e.words ? 1 : 4, i = cs(as, e.rectangle, {
 			stored: { value: e.stored },
 			firstLayer: { value: Math.floor(t * s / r) },
 			sharing: { value: r },
@@ -3182,31 +3182,31 @@ function xs(e, t) {
 	}
 	return d;
 }
-function Ss({ part: e, first: t, groups: n, quad: r }, i, a) {
+function Cs({ part: e, first: t, groups: n, quad: r }, i, a) {
 	let { basis: o, colours: s, words: c } = e, { uniforms: l } = r.material, u = (e, t) => {
 		let n = l[e];
 		n && (n.value = t);
-	}, d = o !== null && a.eye !== null && a.only === null, f = c ? 1 : 4, p = Array.from({ length: f * n }, (e, n) => Cs(o, f * t + n, a, d)), m = Math.ceil((p.findLastIndex((e) => e !== 0) + 1) / f), [h, g] = [l.scale?.value, l.bias?.value], _ = s.length;
+	}, d = o !== null && a.eye !== null && a.only === null, f = c ? 1 : 4, p = Array.from({ length: f * n }, (e, n) => ws(o, f * t + n, a, d)), m = Math.ceil((p.findLastIndex((e) => e !== 0) + 1) / f), [h, g] = [l.scale?.value, l.bias?.value], _ = s.length;
 	for (let n = 0; n < 4 * _ * m; n++) {
 		let r = p[f * Math.floor(n / (4 * _)) + n % f] ?? 0;
 		h[n] = r * (e.scale[4 * _ * t + n] ?? 0), g[n] = r * (e.bias[4 * _ * t + n] ?? 0);
 	}
 	u("entries", _ * m), u("rayWeights", d), u("weightMaps", d ? a.maps : null), u("places", i), a.eye && (l.eye?.value).set(...a.eye), r.visible = m > 0, r.material.uniformsNeedUpdate = !0;
 }
-function Cs(e, t, n, r) {
+function ws(e, t, n, r) {
 	return e ? e.ready[t] ? n.only === null ? t >= n.count ? 0 : r ? 1 : n.weights[e.column + t] ?? 0 : +(t === n.only) : 0 : +!!n.mean;
 }
-function ws(e, t) {
+function Ts(e, t) {
 	let { weights: n, eye: r, ...i } = e;
 	return !Object.entries(i).every(([e, n]) => t[e] === n) || r === null != (t.eye === null) ? !1 : e.only === null ? r ? r.every((e, n) => e === t.eye?.[n]) : n.every((e, n) => e === t.weights[n]) : !0;
 }
 // eigenfield-three/src/maps.ts
-function Ts(e, t, n, i, a) {
+function Es(e, t, n, i, a) {
 	let c = i.reduce((e, t) => e + t, 0), l = [], [u, d] = [0, 0];
 	for (let e of i) {
 		let t = Math.min(e, a);
 		for (let e = 0; e < t; e++) l.push([u + e, 4 * d + e]);
-		u += e, d += t ? Io(t) : 0;
+		u += e, d += t ? Lo(t) : 0;
 	}
 	let f = new Uint16Array(Math.max(1, d) * 129 * 129 * 4);
 	for (let r = 0; r < 129; r++) for (let i = 0; i < 129; i++) {
@@ -3225,7 +3225,7 @@ function Ts(e, t, n, i, a) {
 	return p.format = D, p.type = g, p.minFilter = p.magFilter = y, p.wrapS = p.wrapT = r, p.needsUpdate = !0, p;
 }
 // eigenfield-three/src/eigen-weights.ts
-var Es = class {
+var Ds = class {
 	info;
 	counts;
 	omega;
@@ -3262,7 +3262,7 @@ var Es = class {
 	maps(e, t) {
 		if (this.made?.mixing === e && this.made.usable === t) return this.made.texture;
 		this.dispose();
-		let n = Ts(this.views, e, this.omega, this.counts, t);
+		let n = Es(this.views, e, this.omega, this.counts, t);
 		return this.made = {
 			texture: n,
 			mixing: e,
@@ -3272,20 +3272,20 @@ var Es = class {
 	dispose() {
 		this.made?.texture.dispose();
 	}
-}, Ds = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", Os = {
+}, Os = "\nuniform sampler2D composed;\nuniform float finest;\nuniform vec3 exposureScale;\nuniform vec3 exposureBias;\nvec4 surfaceValue(vec2 uv) {\n  vec4 plain = texture(composed, uv, -log2(finest));\n#if BICUBIC == 1\n  vec2 size = vec2(textureSize(composed, 0));\n  vec2 across = dFdx(uv) * size, down = dFdy(uv) * size;\n  bool fine = max(dot(across, across), dot(down, down)) <= finest * finest;\n  if (fine) return readCubic(composed, clamp(uv * size, vec2(0.5), size - 0.5) - 0.5);\n#endif\n  return plain;\n}\nvec3 seenColour(vec4 value) { return value.rgb * exposureScale + exposureBias; }\nvec3 surfaceColour(vec2 uv) { return clamp(seenColour(surfaceValue(uv)), 0.0, 1.0); }\nvec4 sheetColour(vec2 uv) {\n  vec4 value = surfaceValue(uv);\n  float opacity = clamp(value.a, 0.0, 1.0);\n  return vec4(seenColour(value) * opacity, opacity);\n}\n", ks = {
 	bilinear: 0,
 	bicubic: 1
-}, ks = {
+}, As = {
 	picture: 0,
 	mean: 1,
 	eigen: 2,
 	error: 3
-}, As = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", js = As.replace("void main", "invariant gl_Position;\nvoid main"), Ms = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", Ns = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", Ps = `${Ms}
-${Qo}${Ds}
+}, js = "\nprecision highp float;\nuniform mat4 modelViewMatrix;\nuniform mat4 projectionMatrix;\nin vec3 position;\nin vec2 uv;\nout vec2 surfaceUv;\nout vec3 surfacePlace;\nvoid main() {\n  surfaceUv = uv;\n  surfacePlace = position;\n  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));\n}\n", Ms = js.replace("void main", "invariant gl_Position;\nvoid main"), Ns = "\nprecision highp float;\nprecision highp int;\nprecision highp sampler2D;\nuniform int shown;             // 0 the picture, 1 the mean, 2 one eigen texture, 3 the error\n", Ps = "\nuniform sampler2D photograph;  // row 0 on top\nuniform mat4 toPhotograph;     // homogeneous texture coordinates of a place, in x, y and w\n\nvec3 heat(float t) {\n  return clamp(vec3(3.0 * t, 3.0 * t - 1.0, 3.0 * t - 2.0), 0.0, 1.0);\n}\n\nvec3 errorColour(vec3 drawn, vec3 place) {\n  vec4 at = toPhotograph * vec4(place, 1.0);\n  vec2 uv = at.xy / at.w;\n  if (at.w <= 0.0 || any(lessThan(uv, vec2(0.0))) || any(greaterThan(uv, vec2(1.0)))) return vec3(0.2);\n  vec3 off = abs(drawn - textureLod(photograph, uv, 0.0).rgb);\n  return heat(5.0 * (off.r + off.g + off.b) / 3.0);\n}\n", Fs = `${Ns}
+${$o}${Os}
 uniform float shownGain;       // of the eigen texture around mid grey
 in vec2 surfaceUv;
 vec3 eigenColour(vec3 value) { return clamp(0.5 + shownGain * value, 0.0, 1.0); }
-`, Fs = `${Ps}${Ns}
+`, Is = `${Fs}${Ps}
 in vec3 surfacePlace;
 out vec4 fragment;
 void main() {
@@ -3295,7 +3295,7 @@ void main() {
   if (shown == 3) colour = errorColour(colour, surfacePlace);
   fragment = vec4(colour, 1.0);
 }
-`, Is = `${Ps}
+`, Ls = `${Fs}
 layout(location = 0) out vec4 fragment;
 layout(location = 1) out vec4 solid;
 vec3 threeBytes(float depth) {
@@ -3309,76 +3309,76 @@ void main() {
   float depth = (gl_FragCoord.z - gl_DepthRange.near) / gl_DepthRange.diff;
   solid = colour.a < 0.5 ? vec4(0.0) : vec4(threeBytes(depth), 1.0);
 }
-`, Ls = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", Rs = {
+`, Rs = "\nprecision highp float;\nlayout(location = 0) out vec4 fragment;\nlayout(location = 1) out vec4 solid;\nvoid main() { fragment = solid = vec4(0.0); }\n", zs = {
 	blending: a,
 	blendSrc: E,
 	blendDst: ee
-}, zs = {
+}, Bs = {
 	depthWrite: !1,
 	stencilWrite: !0,
 	stencilFunc: d,
 	stencilZPass: _
 };
-function Bs(e, t) {
+function Vs(e, t) {
 	let n = {
 		composed: { value: null },
 		finest: { value: 1 },
 		exposureScale: { value: new A(1, 1, 1) },
 		exposureBias: { value: new A() },
-		shown: { value: ks.picture },
+		shown: { value: As.picture },
 		shownGain: { value: 1 },
 		photograph: { value: null },
 		toPhotograph: { value: new x() }
 	}, r = new O({
 		glslVersion: h,
-		vertexShader: t ? js : As,
-		fragmentShader: t ? Is : Fs,
+		vertexShader: t ? Ms : js,
+		fragmentShader: t ? Ls : Is,
 		uniforms: n,
-		defines: { BICUBIC: Os.bicubic },
+		defines: { BICUBIC: ks.bicubic },
 		side: e ? u : m,
 		...t ? {
-			...Rs,
-			...zs
+			...zs,
+			...Bs
 		} : {}
 	});
 	return r.name = "eigen textures", r;
 }
-function Vs(e) {
+function Hs(e) {
 	let { side: t } = e;
 	return new O({
 		name: "depth of sheets",
 		glslVersion: h,
-		vertexShader: js,
-		fragmentShader: Ls,
+		vertexShader: Ms,
+		fragmentShader: Rs,
 		colorWrite: !1,
 		side: t,
 		stencilWrite: !0,
 		stencilZPass: se
 	});
 }
-function Hs(e, t, n) {
-	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !Us(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
+function Us(e, t, n) {
+	let { K: r, R: i, t: a, width: o, height: s } = t, c = new x().set(...i[0], a[0], ...i[1], a[1], ...i[2], a[2], 0, 0, 0, 1), l = new x().set(...r[0], 0, ...r[1], 0, 0, 0, 0, 0, ...r[2], 0), u = n.flipY && !Ws(n.image), d = new x().makeScale(1 / o, (u ? -1 : 1) / s, 1);
 	u && (d.elements[13] = 1), e.toPhotograph.value.multiplyMatrices(d, l.multiply(c)), e.photograph.value = n;
 }
-function Us(e) {
+function Ws(e) {
 	return typeof ImageBitmap < "u" && e instanceof ImageBitmap;
 }
 // eigenfield-three/src/pieces.ts
-function Ws(e) {
+function Gs(e) {
 	for (let { picture: t } of e) "close" in t && t.close();
 }
 // eigenfield-three/src/strength.ts
-var Gs = 128, Ks = .98;
-async function qs(e, t, n, r) {
+var Ks = 128, qs = .98;
+async function Js(e, t, n, r) {
 	let i = n.length, a = 0, o = e.pictures.find(({ textures: e }) => (a += e) > t);
 	if (!o) return 1;
-	let s = t - (a - o.textures), c = qi(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Gs, Gs).getContext("2d", { willReadFrequently: !0 });
+	let s = t - (a - o.textures), c = qi(o), l = o.pieces < i, u = await o.codec.bitmaps(await r(o.view), o, e.size), d = new OffscreenCanvas(Ks, Ks).getContext("2d", { willReadFrequently: !0 });
 	if (!d) return 1;
 	d.imageSmoothingEnabled = !1;
 	let f = [];
 	return u.slice(o.pieces * s, o.pieces * (s + 1)).forEach(({ picture: e, row: t, rows: r }, a) => {
-		d.drawImage(e, 0, t, e.width, r, 0, 0, Gs, Gs);
-		let { data: u } = d.getImageData(0, 0, Gs, Gs);
+		d.drawImage(e, 0, t, e.width, r, 0, 0, Ks, Ks);
+		let { data: u } = d.getImageData(0, 0, Ks, Ks);
 		(l ? [
 			0,
 			1,
@@ -3387,15 +3387,15 @@ async function qs(e, t, n, r) {
 			let [t, r] = [o.scale, o.zero].map((t) => t[i * s + e] ?? 0), a = Math.max(...(n[e] ?? [0]).map(Math.abs)) * (t ?? 0);
 			for (let t = l ? e : 0; t < u.length; t += 4) f.push(Math.abs((c * (u[t] ?? 0) - (r ?? 0)) * a));
 		});
-	}), Ws(u), Js(f);
+	}), Gs(u), Ys(f);
 }
-function Js(e) {
+function Ys(e) {
 	e.sort((e, t) => e - t);
-	let t = e[Math.floor(Ks * e.length)] ?? 0;
+	let t = e[Math.floor(qs * e.length)] ?? 0;
 	return t > 0 ? .45 / t : 1;
 }
 // eigenfield-three/src/film-textures.ts
-var Ys = class {
+var Xs = class {
 	scene;
 	films;
 	filling = null;
@@ -3438,44 +3438,44 @@ var Ys = class {
 	}
 	gainOf({ part: e, pieces: t, scale: n, zero: r }, i, a) {
 		let o = e && this.films[e.film];
-		return o ? Js(Gt(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
+		return o ? Ys(Gt(o, e).slice(t * i, t * (i + 1)).flatMap((e, o) => {
 			let s = t * i + o, c = Math.max(...(a[o] ?? [0]).map(Math.abs)) * (n[s] ?? 0);
-			return Zs(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
+			return Qs(e).map((e) => Math.abs((e - (r[s] ?? 0)) * c));
 		})) : 1;
 	}
-}, Xs = 8;
-function Zs({ data: e, width: t, height: n, stride: r }) {
+}, Zs = 8;
+function Qs({ data: e, width: t, height: n, stride: r }) {
 	let i = [];
-	for (let a = 0; a < n; a += Xs) for (let n = 0; n < t; n += Xs) {
+	for (let a = 0; a < n; a += Zs) for (let n = 0; n < t; n += Zs) {
 		let t = a * r + 2 * n;
 		i.push(e[t] + 256 * e[t + 1]);
 	}
 	return i;
 }
 // eigenfield-three/src/container.ts
-var Qs = 1179937895, $s = 1313821514, ec = 5130562, tc = 1280591429;
-async function nc(e) {
+var $s = 1179937895, ec = 1313821514, tc = 5130562, nc = 1280591429;
+async function rc(e) {
 	let t = await e.read(0, 4).catch((t) => {
-		throw t instanceof j && t.code === "truncated" ? sc(e.received === 0) : t;
+		throw t instanceof j && t.code === "truncated" ? cc(e.received === 0) : t;
 	});
-	if (new DataView(t).getUint32(0, !0) !== Qs) throw sc(!1);
+	if (new DataView(t).getUint32(0, !0) !== $s) throw cc(!1);
 	let n = new DataView(await e.read(0, 12)), r = n.getUint32(4, !0), i = n.getUint32(8, !0);
 	if (r !== 2) throw new j("version", `The file is GLB version ${r} and this viewer reads 2; save it as glTF 2.`, "4");
 	if (i < 20) throw M("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
-	if (a.getUint32(4, !0) !== $s) throw M("16", "it does not begin with JSON");
+	if (a.getUint32(4, !0) !== ec) throw M("16", "it does not begin with JSON");
 	if (o > Ce) throw M("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw M("12", "a chunk longer than the file");
-	let s = ic(await e.read(20, 20 + o)), c = (t, n) => () => rc(e, 20 + o, i, t, n);
+	let s = ac(await e.read(20, 20 + o)), c = (t, n) => () => ic(e, 20 + o, i, t, n);
 	return {
 		length: i,
 		text: s,
-		json: ac(s, "20"),
-		binary: c(ec, "binary chunk"),
-		groups: c(tc, "chunk of groups")
+		json: oc(s, "20"),
+		binary: c(tc, "binary chunk"),
+		groups: c(nc, "chunk of groups")
 	};
 }
-async function rc(e, t, n, r, i) {
+async function ic(e, t, n, r, i) {
 	let a = t;
 	for (let t = 1; t < 64 && a + 8 <= n; t++) {
 		let t = new DataView(await e.read(a, a + 8)), i = t.getUint32(0, !0);
@@ -3485,22 +3485,22 @@ async function rc(e, t, n, r, i) {
 	}
 	throw M(String(t), `no ${i}`);
 }
-function ic(e) {
+function ac(e) {
 	try {
 		return new TextDecoder("utf-8", { fatal: !0 }).decode(e);
 	} catch {
 		throw M("20", "its JSON is not UTF-8");
 	}
 }
-function ac(e, t) {
-	if (oc(e) > 64) throw M(t, "its JSON is nested too deep");
+function oc(e, t) {
+	if (sc(e) > 64) throw M(t, "its JSON is nested too deep");
 	try {
 		return JSON.parse(e);
 	} catch {
 		throw M(t, "its JSON cannot be read");
 	}
 }
-function oc(e) {
+function sc(e) {
 	let [t, n] = [0, 0], r = !1;
 	for (let i = 0; i < e.length; i++) {
 		let a = e[i];
@@ -3511,11 +3511,11 @@ function oc(e) {
 	}
 	return n;
 }
-function sc(e) {
+function cc(e) {
 	return new j("not-glb", e ? "The file is empty; take a .glb file that eigenfield wrote." : "The file is no GLB; take a .glb file that eigenfield wrote.", "0");
 }
 // eigenfield-three/src/groups.ts
-var cc = 3, lc = 4, uc = class {
+var lc = 3, uc = 4, dc = class {
 	scene;
 	timeline;
 	mesh;
@@ -3527,16 +3527,16 @@ var cc = 3, lc = 4, uc = class {
 	open(e) {
 		let t = this.kept.get(e) ?? this.opened(e);
 		t.catch(() => this.kept.get(e) === t && this.kept.delete(e)), this.kept.delete(e), this.kept.set(e, t);
-		for (let [e] of this.kept) this.kept.size > cc && this.kept.delete(e);
+		for (let [e] of this.kept) this.kept.size > lc && this.kept.delete(e);
 		return t;
 	}
 	async begin() {
-		let e = this.placeOf(0), t = async (t) => new Uint8Array(await this.read(e, Math.min(t, e.length))), { head: n, at: r } = await hc(await t(lc + pc(await t(lc), e)), e), i = [
+		let e = this.placeOf(0), t = async (t) => new Uint8Array(await this.read(e, Math.min(t, e.length))), { head: n, at: r } = await gc(await t(uc + mc(await t(uc), e)), e), i = [
 			n.key("weights"),
 			n.key("mesh"),
 			n.key("motion"),
 			n.key("frames").at(0)
-		].reduce((e, { raw: t }) => e + mc(t), r);
+		].reduce((e, { raw: t }) => e + hc(t), r);
 		return this.build(0, await t(i), n, r, 1);
 	}
 	placeOf(e) {
@@ -3546,12 +3546,12 @@ var cc = 3, lc = 4, uc = class {
 	}
 	async opened(e) {
 		let t = this.placeOf(e), n = new Uint8Array(await this.read(t, t.length));
-		await fc(n, t);
-		let { head: r, at: i } = await hc(n, t);
+		await pc(n, t);
+		let { head: r, at: i } = await gc(n, t);
 		return this.build(e, n, r, i, t.frames);
 	}
 	build(e, t, n, r, i) {
-		let a = this.placeOf(e), o = gc(t, r, a), s = this.weightsOf(n, o), c = this.meshOf(n, o), l = _c(n, o, c, a), { first: u, frames: d } = a, f = vc(n, a, this.timeline.films.length, o, i);
+		let a = this.placeOf(e), o = _c(t, r, a), s = this.weightsOf(n, o), c = this.meshOf(n, o), l = vc(n, o, c, a), { first: u, frames: d } = a, f = yc(n, a, this.timeline.films.length, o, i);
 		return {
 			index: e,
 			first: u,
@@ -3572,9 +3572,9 @@ var cc = 3, lc = 4, uc = class {
 		return r;
 	}
 	weightsOf(e, t) {
-		let n = this.scene.heldOut.filter((e) => !e).length, r = bc(e.key("weights"), this.scene.planes.length);
+		let n = this.scene.heldOut.filter((e) => !e).length, r = xc(e.key("weights"), this.scene.planes.length);
 		return eo(n, this.scene.planes.flatMap(({ bases: e }, i) => {
-			let a = r[i] && bc(r[i], e.length);
+			let a = r[i] && xc(r[i], e.length);
 			return e.map(({ count: e }, r) => {
 				let i = a[r];
 				return no(W["weights-1"].decode(t(i), i.where), n, e, i.where);
@@ -3584,40 +3584,40 @@ var cc = 3, lc = 4, uc = class {
 	scalesOf(e) {
 		let { planes: t } = this.scene;
 		return {
-			means: bc(e.key("means"), t.length).map((e, n) => yc(e, t[n].mean)),
-			bases: bc(e.key("bases"), t.length).flatMap((e, n) => {
+			means: xc(e.key("means"), t.length).map((e, n) => bc(e, t[n].mean)),
+			bases: xc(e.key("bases"), t.length).flatMap((e, n) => {
 				let { bases: r } = t[n];
-				return bc(e, r.length).map((e, t) => yc(e, r[t].pictures[0]));
+				return xc(e, r.length).map((e, t) => bc(e, r[t].pictures[0]));
 			})
 		};
 	}
 };
-function dc(e, { means: t, bases: n }) {
+function fc(e, { means: t, bases: n }) {
 	e.planes.forEach(({ mean: e }, n) => Object.assign(e, t[n])), J(e).forEach(({ pictures: [e] }, t) => e && Object.assign(e, n[t]));
 }
-async function fc(e, { sha256: t, file: n, where: r }) {
+async function pc(e, { sha256: t, file: n, where: r }) {
 	let i = globalThis.crypto?.subtle;
 	if (!i) return;
 	let a = new Uint8Array(await i.digest("SHA-256", e));
 	if (Array.from(a, (e) => e.toString(16).padStart(2, "0")).join("") !== t) throw M(n ?? r, "other bytes than its SHA-256 says");
 }
-function pc(e, { where: t }) {
-	if (e.length < lc) throw M(t, "no head");
+function mc(e, { where: t }) {
+	if (e.length < uc) throw M(t, "no head");
 	return new DataView(e.buffer).getUint32(0, !0);
 }
-function mc(e) {
-	return typeof e == "number" ? e : Array.isArray(e) ? e.reduce((e, t) => e + mc(t), 0) : 0;
+function hc(e) {
+	return typeof e == "number" ? e : Array.isArray(e) ? e.reduce((e, t) => e + hc(t), 0) : 0;
 }
-async function hc(e, { where: t }) {
-	let n = lc + pc(e, { where: t });
+async function gc(e, { where: t }) {
+	let n = uc + mc(e, { where: t });
 	if (n > e.length) throw M(t, "a head longer than the group");
-	let r = await xe(e.subarray(lc, n), "deflate-raw", Ve, t);
+	let r = await xe(e.subarray(uc, n), "deflate-raw", Ve, t);
 	return {
-		head: new G(ac(new TextDecoder("utf-8").decode(r), t), t),
+		head: new G(oc(new TextDecoder("utf-8").decode(r), t), t),
 		at: n
 	};
 }
-function gc(e, t, n) {
+function _c(e, t, n) {
 	let r = t;
 	return (t) => {
 		let i = r;
@@ -3625,29 +3625,29 @@ function gc(e, t, n) {
 		return e.subarray(i, r);
 	};
 }
-function _c(e, t, n, { frames: r }) {
+function vc(e, t, n, { frames: r }) {
 	let i = e.key("motion");
 	if (!i.exists) return null;
 	let a = W["motion-1"].decode(t(i), n, i.where);
 	if (a.frames !== r) throw i.wrong(`${a.frames} frames of ${r}`);
 	return a;
 }
-function vc(e, t, n, r, i) {
-	return bc(e.key("frames"), t.frames).slice(0, i).map((e) => bc(e, n).map((e) => r(e)));
+function yc(e, t, n, r, i) {
+	return xc(e.key("frames"), t.frames).slice(0, i).map((e) => xc(e, n).map((e) => r(e)));
 }
-function yc(e, { pieces: t, textures: n }) {
+function bc(e, { pieces: t, textures: n }) {
 	let r = e;
 	return {
 		scale: Yi(r.key("scale"), t, n),
 		zero: Yi(r.key("zero"), t, n)
 	};
 }
-function bc(e, t) {
+function xc(e, t) {
 	let n = e.items(t);
 	if (n.length !== t) throw e.wrong(`${t} entries are needed`);
 	return n;
 }
-var xc = 3, Sc = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", Cc = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", wc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", Tc = `#version 300 es
+var Sc = 3, Cc = "#version 300 es\nvoid main() {\n  gl_Position = vec4(vec2(gl_VertexID % 2, gl_VertexID / 2) * 4.0 - 1.0, 0.0, 1.0);\n}\n", wc = "#version 300 es\nprecision highp float;\nuniform highp sampler2D picture;\nuniform vec4 factors;\nuniform int first; // row of the picture with which the texture begins\nout vec4 stored;\nvoid main() {\n  stored = vec4(dot(texelFetch(picture, ivec2(gl_FragCoord.xy) - ivec2(0, first), 0), factors));\n}\n", Tc = "#version 300 es\nprecision highp float;\nprecision highp int;\n#define EDGE 1e-3 // of a texel: less is rounding\nuniform highp sampler2D picture;\nuniform highp sampler2D precisions;\nuniform highp sampler2D covered; // texels of the grid that lie in charts\nuniform vec4 factors;\nuniform ivec2 size; // of the picture\nuniform ivec2 made; // of what is stored\nuniform int first; // row of the picture with which the texture begins\nuniform ivec2 corner; // of the picture in its grid\nuniform ivec2 nodes; // columns and rows of the precisions that are used; 0: codes are stored as they are\nuniform float zero;\nout vec4 stored;\nfloat nodeAt(ivec2 at) {\n  return texelFetch(precisions, clamp(at, ivec2(0), nodes - 1), 0).r;\n}\nfloat precisionAt(vec2 uv) {\n  vec2 at = uv * vec2(nodes) - 0.5;\n  ivec2 low = ivec2(floor(at));\n  vec2 part = at - vec2(low);\n  float upper = mix(nodeAt(low), nodeAt(low + ivec2(1, 0)), part.x);\n  float lower = mix(nodeAt(low + ivec2(0, 1)), nodeAt(low + ivec2(1, 1)), part.x);\n  return (255.0 * mix(upper, lower, part.y) + 1.0) / 256.0;\n}\nfloat valueAt(ivec2 texel) {\n  float code = dot(texelFetch(picture, texel - ivec2(0, first), 0), factors);\n  if (nodes.x == 0) return code;\n  float fine = precisionAt((vec2(texel) + 0.5) / vec2(size));\n  return clamp((code - zero) / fine / 4.0, -65504.0, 65504.0);\n}\nvoid main() {\n  ivec2 at = ivec2(gl_FragCoord.xy);\n  if (made == size) {\n    stored = vec4(valueAt(at));\n    return;\n  }\n  vec2 ratio = vec2(size) / vec2(made), low = vec2(at) * ratio, high = low + ratio;\n  vec2 charts = vec2(0.0), all = vec2(0.0);\n  for (int y = int(low.y); float(y) < high.y - EDGE; y++) {\n    for (int x = int(low.x); float(x) < high.x - EDGE; x++) {\n      vec2 part = min(high, vec2(x + 1, y + 1)) - max(low, vec2(x, y));\n      vec2 one = part.x * part.y * vec2(valueAt(ivec2(x, y)), 1.0);\n      all += one;\n      charts += one * texelFetch(covered, corner + ivec2(x, y), 0).r;\n    }\n  }\n  vec2 sum = charts.y > EDGE ? charts : all;\n  stored = vec4(sum.x / sum.y, step(EDGE, charts.y), 0.0, 0.0);\n}\n", Ec = `#version 300 es
 precision highp float;
 precision highp int;
 uniform highp sampler2D picture; // values, and whether they are of a chart
@@ -3657,7 +3657,7 @@ void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec2 own = texelFetch(picture, at, 0).rg;
   vec2 sum = vec2(own.r * own.g, own.g);
-  for (int far = 1; far <= ${xc} && sum.y == 0.0; far++) {
+  for (int far = 1; far <= ${Sc} && sum.y == 0.0; far++) {
     for (int y = -far; y <= far; y++) {
       for (int x = -far; x <= far; x++) {
         vec2 near = texelFetch(picture, clamp(at + ivec2(x, y), ivec2(0), size - 1), 0).rg;
@@ -3667,9 +3667,9 @@ void main() {
   }
   stored = vec4(sum.y > 0.0 ? sum.x / sum.y : own.r);
 }
-`, Ec = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
+`, Dc = ["#version 300 es\nin vec2 uv;\nvoid main() { gl_Position = vec4(2.0 * uv - 1.0, 0.0, 1.0); }\n", "#version 300 es\nprecision mediump float;\nout vec4 covered;\nvoid main() { covered = vec4(1.0); }\n"];
 // eigenfield-three/src/parts.ts
-function Dc(e, t, n) {
+function Oc(e, t, n) {
 	let r = [], [i, a, o, s] = [
 		0,
 		0,
@@ -3679,7 +3679,7 @@ function Dc(e, t, n) {
 	return e.planes.forEach((l, u) => {
 		let { channels: d, bases: f } = l, p = e.colours.slice(i, i + d);
 		i += d;
-		let m = t.needs.means[u]?.size ?? [1, 1], h = t.means[u], g = c ? jc([l.mean]) : Ac(l);
+		let m = t.needs.means[u]?.size ?? [1, 1], h = t.means[u], g = c ? Mc([l.mean]) : jc(l);
 		h && r.push({
 			stored: h,
 			grid: m,
@@ -3708,7 +3708,7 @@ function Dc(e, t, n) {
 						a + e[1] / i[1]
 					],
 					colours: p,
-					...c ? jc(u) : Mc(u, d, g, n.halves && Ki(u)),
+					...c ? Mc(u) : Nc(u, d, g, n.halves && Ki(u)),
 					words: c,
 					basis: {
 						ready: h,
@@ -3717,17 +3717,17 @@ function Dc(e, t, n) {
 					}
 				});
 			}
-			o += m, s += g ? Io(g) : 0;
+			o += m, s += g ? Lo(g) : 0;
 		}
 	}), r;
 }
-function Oc(e, t, n, r) {
-	Dc(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
+function kc(e, t, n, r) {
+	Oc(t, n, r).forEach(({ scale: t, bias: n }, r) => Object.assign(e[r] ?? {}, {
 		scale: t,
 		bias: n
 	}));
 }
-function kc({ planes: e, sheets: t }, { means: n, needs: r }, { words: i }) {
+function Ac({ planes: e, sheets: t }, { means: n, needs: r }, { words: i }) {
 	let a = n[e.length], o = r.means[e.length]?.size;
 	return !t || !a || !o ? null : {
 		stored: a,
@@ -3743,12 +3743,12 @@ function kc({ planes: e, sheets: t }, { means: n, needs: r }, { words: i }) {
 			0,
 			0
 		]],
-		...i ? jc([t.opacity.mean]) : Ac(t.opacity),
+		...i ? Mc([t.opacity.mean]) : jc(t.opacity),
 		words: i,
 		basis: null
 	};
 }
-function Ac({ mean: e, channels: t, precision: n }) {
+function jc({ mean: e, channels: t, precision: n }) {
 	let { scale: r, zero: i } = e, a = n ? 4 : 1 / Ji(e, Ki([e])), o = {
 		scale: new Float32Array(4 * t),
 		bias: new Float32Array(4 * t)
@@ -3759,7 +3759,7 @@ function Ac({ mean: e, channels: t, precision: n }) {
 	}
 	return o;
 }
-function jc(e) {
+function Mc(e) {
 	let t = e.flatMap((e) => e.scale), n = e.flatMap((e) => e.zero);
 	return {
 		scale: Float32Array.from(t.flatMap((e) => [
@@ -3776,8 +3776,8 @@ function jc(e) {
 		]))
 	};
 }
-function Mc(e, t, n, r) {
-	let i = e.flatMap((e) => Array(e.textures).fill(Ji(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * Io(n), c = {
+function Nc(e, t, n, r) {
+	let i = e.flatMap((e) => Array(e.textures).fill(Ji(e, r))), a = e.flatMap((e) => e.scale), o = e.flatMap((e) => e.zero), s = 4 * t * Lo(n), c = {
 		scale: new Float32Array(s),
 		bias: new Float32Array(s)
 	};
@@ -3788,7 +3788,7 @@ function Mc(e, t, n, r) {
 	return c;
 }
 // eigenfield-three/src/player.ts
-var Nc = .25, Pc = 100, Fc = 2, Ic = .25, Lc = .1, Rc = class extends f {
+var Pc = .25, Fc = 100, Ic = 2, Lc = .25, Rc = .1, zc = class extends f {
 	timeline;
 	user;
 	first;
@@ -3887,7 +3887,7 @@ var Nc = .25, Pc = 100, Fc = 2, Ic = .25, Lc = .1, Rc = class extends f {
 	}
 	update(e = performance.now()) {
 		if (this.disposed) return;
-		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, Nc);
+		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, Pc);
 		if (this.last = this.plays && this.goal === null ? e : null, this.goal === null && !this.plays) return;
 		this.goal === null ? (this.advance(t), this.sound?.follow(this.first + this.clock % this.frames / this.rate, this.pace)) : this.sound?.rest();
 		let n = this.ring.take(this.goal ?? Math.floor(this.clock));
@@ -3904,9 +3904,9 @@ var Nc = .25, Pc = 100, Fc = 2, Ic = .25, Lc = .1, Rc = class extends f {
 	}
 	advance(e) {
 		let [t, n] = [this.clock, e * this.pace * this.rate], r = this.loop ? this.ring.reach : Math.min(this.ring.reach, this.end);
-		if (this.clock = Math.max(t, Math.min(t + n, r)), e > Lc) return;
+		if (this.clock = Math.max(t, Math.min(t + n, r)), e > Rc) return;
 		let { watched: i } = this;
-		i.seconds += e, i.due += n, this.ring.busy && (i.short += n - (this.clock - t)), i.seconds < Fc || (i.short > Ic * i.due && this.ring.leaveOut(), this.watch());
+		i.seconds += e, i.due += n, this.ring.busy && (i.short += n - (this.clock - t)), i.seconds < Ic || (i.short > Lc * i.due && this.ring.leaveOut(), this.watch());
 	}
 	watch() {
 		this.watched = {
@@ -3936,7 +3936,7 @@ var Nc = .25, Pc = 100, Fc = 2, Ic = .25, Lc = .1, Rc = class extends f {
 		}, this.user.show(e), this.note(e), this.goal !== null && t !== this.goal && this.following === null ? this.preview() : this.goal !== null && (this.goal = null, this.clock = t, this.following === null ? this.settle() : this.begin(this.following)), this.dispatchEvent({ type: "frame" });
 	}
 	preview() {
-		this.ring.previewsFrom = this.goal === null ? Infinity : performance.now() + Pc;
+		this.ring.previewsFrom = this.goal === null ? Infinity : performance.now() + Fc;
 	}
 	note({ films: e }) {
 		let t = [];
@@ -3961,8 +3961,8 @@ var Nc = .25, Pc = 100, Fc = 2, Ic = .25, Lc = .1, Rc = class extends f {
 		let n = this.goal !== null && q(this.timeline, this.goal % this.frames);
 		n === !1 || t !== null && n !== t || (this.goal !== null && (this.clock = this.goal), this.goal = this.following = null, this.settle());
 	}
-}, zc = 65535;
-function Bc(e, t) {
+}, Bc = 65535;
+function Vc(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -3972,37 +3972,37 @@ function Bc(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
 }
-async function Vc({ view: e, codec: t, where: n }, r) {
+async function Hc({ view: e, codec: t, where: n }, r) {
 	let i = t.decode(new Uint8Array(await r(e)), n);
 	if (!i.indices.length) throw M(n, "a mesh without faces");
 	return i;
 }
-function Hc({ positions: n, uv: r, indices: i }) {
+function Uc({ positions: n, uv: r, indices: i }) {
 	let a = new t();
 	a.setAttribute("position", new e(n.slice(), 3)), a.setAttribute("uv", new e(r, 2));
-	let o = n.length / 3 <= zc;
+	let o = n.length / 3 <= Bc;
 	return a.setIndex(new e(o ? Uint16Array.from(i) : i, 1)), a;
 }
-function Uc(e) {
+function Wc(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/footprint.ts
-var Wc = 256;
-function Gc(e, t, n) {
+var Gc = 256;
+function Kc(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Wc)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / Gc)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Kc(t, i.getX(e), i.getY(e), i.getZ(e))), l = qc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => qc(t, i.getX(e), i.getY(e), i.getZ(e))), l = Jc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = qc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = Jc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -4012,7 +4012,7 @@ function Gc(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function Kc({ K: e, R: t, t: n }, r, i, a) {
+function qc({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -4020,12 +4020,12 @@ function Kc({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function qc(e) {
+function Jc(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/sheet-stack.ts
-var Jc = "sheets", Yc = 16, Xc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Zc = `${Ms}${Ns}
+var Yc = "sheets", Xc = 16, Zc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Qc = `${Ns}${Ps}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -4050,7 +4050,7 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, Qc = new ae(), $c = class {
+`, $c = new ae(), el = class {
 	material;
 	scene = new k();
 	camera = new n();
@@ -4060,16 +4060,16 @@ void main() {
 	everywhere = new t();
 	target = null;
 	constructor(t) {
-		this.material = t, this.depth = Vs(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
+		this.material = t, this.depth = Hs(t), this.depth.transparent = t.transparent = !0, this.sheets.frustumCulled = !1, this.sheets.onBeforeRender = (e, t, n, r, i, a) => {
 			let { materialIndex: o = 0 } = a, s = this.sheets.material.length / 2, c = s - 1 - (o >> 1);
 			e.getContext().depthRange(c / s, (c + 1) / s);
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: n, photograph: r, toPhotograph: i } = t.uniforms;
 		this.screen = new O({
-			name: Jc,
+			name: Yc,
 			glslVersion: h,
-			vertexShader: Xc,
-			fragmentShader: Zc,
+			vertexShader: Zc,
+			fragmentShader: Qc,
 			uniforms: {
 				shown: n,
 				photograph: r,
@@ -4083,7 +4083,7 @@ void main() {
 				toPlace: { value: new x() }
 			},
 			transparent: !0,
-			...Rs
+			...zs
 		});
 		let a = new Float32Array([
 			-1,
@@ -4099,7 +4099,7 @@ void main() {
 		this.everywhere.setAttribute("position", new e(a, 3));
 	}
 	get bytes() {
-		return this.target ? Yc * this.target.width * this.target.height : 0;
+		return this.target ? Xc * this.target.width * this.target.height : 0;
 	}
 	setGeometry(e, t) {
 		e.clearGroups();
@@ -4117,7 +4117,7 @@ void main() {
 	attach(e, t) {
 		for (let t of [e.material].flat()) t.visible = !1;
 		let n = new S(this.everywhere, this.screen);
-		n.name = Jc, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
+		n.name = Yc, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
 			t(n, i), this.draw(n, i, e);
 		}, e.add(n);
 	}
@@ -4128,18 +4128,18 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(Qc);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport($c);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = el(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = tl(a, o));
 		let { target: s } = this;
-		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), gs(e, t, () => {
+		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), _s(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
 		}), e.getContext().depthRange(0, 1);
 		let { uniforms: c } = this.screen;
 		this.set("sheets", s.textures[0]), this.set("solid", s.textures[1]), this.set("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function el(e, t) {
+function tl(e, t) {
 	let n = new l(e, t, re);
 	n.format = c;
 	let r = new oe(e, t, {
@@ -4153,7 +4153,7 @@ function el(e, t) {
 	return i && (i.type = ne), r;
 }
 // eigenfield-three/src/surface.ts
-var tl = class {
+var nl = class {
 	meshes;
 	faces;
 	reference;
@@ -4169,7 +4169,7 @@ var tl = class {
 		if (!i) throw Error("a field needs a mesh");
 		this.mesh = i;
 		let a = [i.material].flat().some((e) => e.side !== m);
-		this.material = Bs(a, t !== null), this.stack = t && new $c(this.material);
+		this.material = Vs(a, t !== null), this.stack = t && new el(this.material);
 		for (let t of e) {
 			let e = (e, n) => r(e, n, t);
 			this.stack ? this.stack.attach(t, e) : (t.material = this.material, t.onBeforeRender = (t, n, r) => e(t, r));
@@ -4196,59 +4196,59 @@ var tl = class {
 		e.boundingBox = e.boundingSphere = null, this.faces = t, this.version += 1, n !== e && (this.laid = this.version), this.show(t);
 	}
 	show(e) {
-		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Gc(this.geometry, this.reference, [1, 1]) : 0;
+		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Kc(this.geometry, this.reference, [1, 1]) : 0;
 	}
 	dispose() {
 		this.stack?.dispose(), this.material.dispose(), this.geometry.dispose();
 	}
 };
 // eigenfield-three/src/gpu.ts
-function nl(e) {
+function rl(e) {
 	let t = e.getContext();
 	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
 	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
 }
-function rl(e, t) {
+function il(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function il(e, { components: t, halves: n }) {
+function al(e, { components: t, halves: n }) {
 	return t > 2 ? n ? e.RGBA16F : e.RGBA8 : t > 1 ? n ? e.RG16F : e.RG8 : n ? e.R16F : e.R8;
 }
-function al(e, [t, n], r, i, a) {
-	return ll(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, il(e, a), t, n, r);
+function ol(e, [t, n], r, i, a) {
+	return ul(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, al(e, a), t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function ol(e, t, n, r) {
-	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
-	ul(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
-}
 function sl(e, t, n, r) {
-	ul(e, e.TEXTURE_2D_ARRAY, t, () => {
+	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
+	dl(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
+}
+function cl(e, t, n, r) {
+	dl(e, e.TEXTURE_2D_ARRAY, t, () => {
 		e.pixelStorei(e.UNPACK_ALIGNMENT, 1), r.forEach(({ data: t, width: r, height: i, stride: a }, o) => {
 			e.pixelStorei(e.UNPACK_ROW_LENGTH, a / 2), e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, n + o, r, i, 1, e.RG, e.UNSIGNED_BYTE, t);
 		});
 	});
 }
-function cl(e, [t, n], r) {
-	return ll(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, il(e, r), t, n);
+function ll(e, [t, n], r) {
+	return ul(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, al(e, r), t, n);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D, t, e.NEAREST);
 	});
 }
-function ll(e, t, n) {
+function ul(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return ul(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return dl(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function ul(e, t, n, r) {
+function dl(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -4262,7 +4262,7 @@ function ul(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-function dl(e, t, n) {
+function fl(e, t, n) {
 	let r = e.createProgram();
 	for (let [i, a] of [[e.VERTEX_SHADER, t], [e.FRAGMENT_SHADER, n]]) {
 		let t = e.createShader(i);
@@ -4270,7 +4270,7 @@ function dl(e, t, n) {
 	}
 	return e.linkProgram(r), r;
 }
-function fl(e, t, n, r) {
+function pl(e, t, n, r) {
 	if (!n) {
 		r();
 		return;
@@ -4278,9 +4278,9 @@ function fl(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), ul(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), dl(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function pl(e, t) {
+function ml(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -4295,13 +4295,13 @@ function pl(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r && e.isProgram(r) ? r : null), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/charts.ts
-function ml(e, t) {
-	let n = dl(e, ...Ec), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
+function hl(e, t) {
+	let n = fl(e, ...Dc), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
 		let { index: o } = t, s = t.getAttribute("uv"), c = Float32Array.from({ length: 2 * (o?.count ?? 0) }, (e, t) => {
 			let n = o?.getX(t >> 1) ?? 0;
 			return t % 2 ? s.getY(n) : s.getX(n);
 		}), [l, u] = [e.createVertexArray(), e.createBuffer()], d = e.getParameter(e.ARRAY_BUFFER_BINDING);
-		pl(e, () => {
+		ml(e, () => {
 			e.useProgram(n), e.bindVertexArray(l), e.bindBuffer(e.ARRAY_BUFFER, u), e.bufferData(e.ARRAY_BUFFER, c, e.STREAM_DRAW);
 			let t = e.getAttribLocation(n, "uv");
 			e.enableVertexAttribArray(t), e.vertexAttribPointer(t, 2, e.FLOAT, !1, 0, 0), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, a, 0), e.viewport(0, 0, ...i), e.colorMask(!0, !0, !0, !0), e.drawArrays(e.TRIANGLES, 0, c.length / 2);
@@ -4312,7 +4312,7 @@ function ml(e, t) {
 			let { geometry: r } = t;
 			if (i?.grid.join() !== n.join() || i.geometry !== r) {
 				e.deleteTexture(i?.texture ?? null);
-				let t = cl(e, n, {
+				let t = ll(e, n, {
 					components: 1,
 					halves: !1
 				});
@@ -4330,7 +4330,7 @@ function ml(e, t) {
 	};
 }
 // eigenfield-three/src/packing.ts
-var hl = [
+var gl = [
 	"precisions",
 	"covered",
 	"factors",
@@ -4341,14 +4341,14 @@ var hl = [
 	"nodes",
 	"zero"
 ];
-function gl(e, t, n, r) {
+function _l(e, t, n, r) {
 	let [i, a, o] = [
-		dl(e, Sc, Cc),
-		dl(e, Sc, wc),
-		dl(e, Sc, Tc)
-	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && ml(e, r), u = (t) => Object.fromEntries(hl.map((n) => [n, e.getUniformLocation(t, n)])), [d, f] = [u(i), u(a)], p = (t, n, r, i, a, o, s) => {
+		fl(e, Cc, wc),
+		fl(e, Cc, Tc),
+		fl(e, Cc, Ec)
+	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && hl(e, r), u = (t) => Object.fromEntries(gl.map((n) => [n, e.getUniformLocation(t, n)])), [d, f] = [u(i), u(a)], p = (t, n, r, i, a, o, s) => {
 		let { picture: c, rows: l } = n, { size: u, corner: d, unit: f, codes: p } = i;
-		_l(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
+		vl(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
 			0,
 			1,
 			2,
@@ -4360,25 +4360,25 @@ function gl(e, t, n, r) {
 		m(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
 	}, g = (r, s, u, g, _, v) => {
 		let { picture: y, row: b, rows: x } = r, [S, C] = _.size, w = S < y.width || C < x ? t.smaller : null, T = Math.max(1, Math.floor((w ? n - 2 : n) * C / x)), E = (w && l?.covered(_.grid)) ?? null;
-		fl(e, 0, s, () => {
+		pl(e, 0, s, () => {
 			for (let t = 0; t < C; t += T) {
 				let n = Math.min(T, C - t), o = Math.floor(t * x / C), s = Math.ceil((t + n) * x / C);
-				_l(y) ? yl(e, y, b + o, s - o) : vl(e, y, b + o, s - o), fl(e, 2, E, () => pl(e, () => {
+				vl(y) ? bl(e, y, b + o, s - o) : yl(e, y, b + o, s - o), pl(e, 2, E, () => ml(e, () => {
 					let s = w || v ? f : d;
 					e.useProgram(w || v ? a : i), e.bindVertexArray(c), e.uniform1i(s.precisions, +!!v), e.uniform1i(s.covered, w ? 2 : 0), e.uniform2i(s.nodes, v?.precision.width ?? 0, v?.precision.height ?? 0), e.uniform1f(s.zero, v?.zero ?? 0), w ? (m(w, null), e.colorMask(!0, !0, !0, !0)) : h(u, g), p(s, r, g.channel, _, o, t, n);
 				}));
 			}
-		}), w && fl(e, 0, w, () => pl(e, () => {
+		}), w && pl(e, 0, w, () => ml(e, () => {
 			e.useProgram(o), e.bindVertexArray(c), e.uniform2i(e.getUniformLocation(o, "size"), S, C), h(u, g), e.viewport(0, 0, S, C), e.drawArrays(e.TRIANGLES, 0, 3);
 		}));
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let s = _l(n.picture) ? t.codes : t.picture;
+			let s = vl(n.picture) ? t.codes : t.picture;
 			if (!s) return;
 			let c = () => i.forEach((e) => g(n, s, r, e, a, o));
-			o ? fl(e, 1, t.precision, () => {
-				vl(e, o.precision, 0, o.precision.height), c();
+			o ? pl(e, 1, t.precision, () => {
+				yl(e, o.precision, 0, o.precision.height), c();
 			}) : c();
 		},
 		free() {
@@ -4392,17 +4392,17 @@ function gl(e, t, n, r) {
 		}
 	};
 }
-function _l(e) {
+function vl(e) {
 	return "data" in e;
 }
-function vl(e, t, n, r) {
+function yl(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function yl(e, { data: t, width: n, stride: r }, i, a) {
+function bl(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
 // eigenfield-three/src/textures.ts
-var bl = class {
+var xl = class {
 	parts;
 	source;
 	surface;
@@ -4440,7 +4440,7 @@ var bl = class {
 				tenBits: Ki([t]),
 				opacity: r
 			};
-		}), l = Aa(i).some(({ mean: e }) => e.part), u = Sl(n.geometry);
+		}), l = Aa(i).some(({ mean: e }) => e.part), u = Cl(n.geometry);
 		this.needs = {
 			atlas: a.size,
 			means: c,
@@ -4461,7 +4461,7 @@ var bl = class {
 		return Math.min(t, ...e);
 	}
 	get bytes() {
-		return this.plan ? this.plan.bytes - this.needs.geometry + Sl(this.surface.geometry) : 0;
+		return this.plan ? this.plan.bytes - this.needs.geometry + Cl(this.surface.geometry) : 0;
 	}
 	get attached() {
 		return this.renderer !== null || this.disposed;
@@ -4491,7 +4491,7 @@ var bl = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = nl(e);
+		let n = rl(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
 		this.plan = i, this.packer = r, this.onPlan(i), await this.source.fill(this.filling(n, i, t)), t.aborted || this.onComplete();
@@ -4522,7 +4522,7 @@ var bl = class {
 		];
 		if (!(u instanceof WebGLTexture) || !d || !f) return;
 		let { size: p, grid: m, corner: h, channels: g, tenBits: _ } = f;
-		l && sl(e, u, g * r, xl(i.slice(0, g * (o - r))));
+		l && cl(e, u, g * r, Sl(i.slice(0, g * (o - r))));
 		let v = Ji(a, c && _), y = {
 			size: X(p, s),
 			grid: m,
@@ -4542,10 +4542,10 @@ var bl = class {
 	putMean(e, t, n, { pieces: r, precision: i }) {
 		let [a, o] = [this.means[n]?.sourceTexture, Aa(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
 		if (!(a instanceof WebGLTexture) || !o || !s) return;
-		if (this.stillVersions[n] = this.version += 1, t.words) return sl(e, a, 0, xl(r));
+		if (this.stillVersions[n] = this.version += 1, t.words) return cl(e, a, 0, Sl(r));
 		let { mean: l, channels: u } = o, d = X(s, t.meanDown), [f] = r;
 		if (f && r.length === 1 && "close" in f.picture && !c && d.join() === s.join()) {
-			ol(e, a, f.picture, u);
+			sl(e, a, f.picture, u);
 			return;
 		}
 		let p = {
@@ -4579,19 +4579,19 @@ var bl = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs;
-		this.needs.geometry = Sl(this.surface.geometry);
+		this.needs.geometry = Cl(this.surface.geometry);
 		let r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
-		for (let i = this.options.memory ?? jo();; i /= 2) {
-			let a = Vo(this.needs, rl(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l, words: u } = a, d = o !== s, f = [...t.map(({ size: t, channels: n, tenBits: r }) => {
-				if (u) return al(e, t, n, !1, To);
+		for (let i = this.options.memory ?? Mo();; i /= 2) {
+			let a = Ho(this.needs, il(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l, words: u } = a, d = o !== s, f = [...t.map(({ size: t, channels: n, tenBits: r }) => {
+				if (u) return ol(e, t, n, !1, To);
 				let i = {
 					components: n,
 					halves: r
 				};
-				return al(e, X(t, o), Po(n), !1, i);
+				return ol(e, X(t, o), Fo(n), !1, i);
 			}), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return u && a ? al(e, t, n * a, !1, To) : al(e, a ? X(t, s) : [1, 1], a ? Fo(a, n) : 1, d, {
+				return u && a ? ol(e, t, n * a, !1, To) : ol(e, a ? X(t, s) : [1, 1], a ? Io(a, n) : 1, d, {
 					components: Math.max(1, a),
 					halves: l && i
 				});
@@ -4602,13 +4602,13 @@ var bl = class {
 				packer: null,
 				plan: a
 			};
-			let m = Wo(this.needs, a, i), [h, g, _] = [
+			let m = Go(this.needs, a, i), [h, g, _] = [
 				m.picture,
 				m.codes,
 				m.smaller
-			].map((t) => t ? cl(e, t.size, t.format) : null), v = cl(e, Go(r), wo);
+			].map((t) => t ? ll(e, t.size, t.format) : null), v = ll(e, Ko(r), wo);
 			if (h && v && (g || !m.codes) && (_ || !m.smaller) && !f.includes(null)) return p(), {
-				packer: gl(e, {
+				packer: _l(e, {
 					picture: h,
 					codes: g ?? null,
 					precision: v,
@@ -4627,14 +4627,14 @@ var bl = class {
 		}
 	}
 };
-function xl(e) {
+function Sl(e) {
 	return e.map(({ picture: e }) => e);
 }
-function Sl({ attributes: e, index: t }) {
+function Cl({ attributes: e, index: t }) {
 	return Object.values(e).reduce((e, t) => e + t.array.byteLength, 0) + (t?.array.byteLength ?? 0);
 }
 // eigenfield-three/src/field.ts
-var Cl = 1.5, wl = .001, Tl = class extends f {
+var wl = 1.5, Tl = .001, El = class extends f {
 	parts;
 	source;
 	mesh;
@@ -4671,7 +4671,7 @@ var Cl = 1.5, wl = .001, Tl = class extends f {
 	constructor(e, t, n = {}) {
 		super(), this.parts = e, this.source = t;
 		let { scene: r, info: i } = e, a = r.sheets?.faces ?? null;
-		this.surface = new tl(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = ro(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new bl(e, t, this.surface, n), this.complete = new Promise((e, t) => {
+		this.surface = new nl(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = ro(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new xl(e, t, this.surface, n), this.complete = new Promise((e, t) => {
 			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0), this.listen(), n.renderer && this.textures.attach(n.renderer);
 	}
@@ -4715,20 +4715,20 @@ var Cl = 1.5, wl = .001, Tl = class extends f {
 		this.textures.onPlan = (e) => {
 			let { scene: t } = this.parts;
 			this.freeComposers(), this.summed = {
-				parts: Dc(t, this.textures, e),
-				opacity: kc(t, this.textures, e)
+				parts: Oc(t, this.textures, e),
+				opacity: Ac(t, this.textures, e)
 			}, e.limitation && queueMicrotask(() => this.dispatchEvent({ type: "limited" }));
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return Cl * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
+		return wl * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
 	}
 	weightsOf(e) {
 		let { scene: t, info: n, weights: r } = this.parts;
-		return new Es(n, J(t).map(({ count: e }) => e), e, r);
+		return new Ds(n, J(t).map(({ count: e }) => e), e, r);
 	}
 	makePlayer({ timeline: e, ring: t, sound: n }) {
-		return new Rc(e, t, {
+		return new zc(e, t, {
 			show: (e) => this.showFrame(e),
 			failed: (e) => this.dispatchEvent({
 				type: "error",
@@ -4737,22 +4737,22 @@ var Cl = 1.5, wl = .001, Tl = class extends f {
 		}, n);
 	}
 	showFrame({ number: e, group: t, films: n }) {
-		this.group && this.shape(t, e - t.first, this.group.mesh, this.group.motion !== null), t !== this.group && this.enter(t), this.plain = n.includes(null), this.source instanceof Ys && this.source.show(n);
+		this.group && this.shape(t, e - t.first, this.group.mesh, this.group.motion !== null), t !== this.group && this.enter(t), this.plain = n.includes(null), this.source instanceof Xs && this.source.show(n);
 	}
 	shape({ mesh: e, motion: t }, n, r, i) {
 		if (this.surface.geometry !== this.moved || e === r && !t && !i) return;
-		let a = e === r ? this.moved : Hc(e), o = a.getAttribute("position");
+		let a = e === r ? this.moved : Uc(e), o = a.getAttribute("position");
 		t ? t.place(n, o.array) : o.copyArray(e.positions), o.needsUpdate = !0, this.moved = a, this.surface.setGeometry(a);
 	}
 	enter(e) {
 		let { scene: t } = this.parts, { plan: n } = this.textures;
-		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), dc(t, e), n && Oc(this.summed.parts, t, this.textures, n);
+		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), fc(t, e), n && kc(this.summed.parts, t, this.textures, n);
 	}
 	prepare(e, t, n) {
 		this.textures.attached || this.textures.attach(e);
-		let r = Ol(t, n), [i, a] = lo(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
+		let r = kl(t, n), [i, a] = lo(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
 		this.setView(), this.setExposure(o, [i, a]);
-		let u = Os[this.filter];
+		let u = ks[this.filter];
 		l.defines.BICUBIC !== u && (l.defines.BICUBIC = u, l.needsUpdate = !0), l.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
 	}
 	compose(e, t, n) {
@@ -4761,7 +4761,7 @@ var Cl = 1.5, wl = .001, Tl = class extends f {
 		let o = r.meanDown * this.coarser, s = this.composers.get(o);
 		if (!s) {
 			let { parts: e, opacity: t } = this.summed;
-			s = new vs(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
+			s = new ys(i, e, t, o, this.coarser > 1, this.surface, a), this.composers.set(o, s);
 		}
 		s.compose(e, t, n);
 		let { composed: c, finest: l } = this.surface.material.uniforms;
@@ -4772,15 +4772,15 @@ var Cl = 1.5, wl = .001, Tl = class extends f {
 		this.composers.clear();
 	}
 	recipe(e, t) {
-		let n = this.surface.material.uniforms.shown.value, r = n === ks.eigen ? this.shownEigen : null;
+		let n = this.surface.material.uniforms.shown.value, r = n === As.eigen ? this.shownEigen : null;
 		return {
 			version: this.textures.version,
 			mean: this.textures.hasMeans && r === null,
 			opacity: this.textures.opacityVersion,
 			only: r,
-			count: n === ks.mean || this.plain ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
+			count: n === As.mean || this.plain ? 0 : Math.max(0, Math.floor(Math.min(this.count, this.total))),
 			weights: e,
-			eye: t && ls(this.info.viewPlane, t),
+			eye: t && us(this.info.viewPlane, t),
 			places: t ? this.surface.version : this.coarser > 1 ? this.surface.laid : 0,
 			maps: t && this.weights.maps(this.mixing, this.usable)
 		};
@@ -4804,9 +4804,9 @@ var Cl = 1.5, wl = .001, Tl = class extends f {
 	}
 	setView() {
 		let { uniforms: e } = this.surface.material, t = this.showsErrors, n = this.view === "error" && !t ? "picture" : this.view, r = this.shownEigen;
-		e.shown.value = ks[n === "eigen" && (this.plain || r >= this.loaded) ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
+		e.shown.value = As[n === "eigen" && (this.plain || r >= this.loaded) ? "mean" : n], n === "eigen" && (e.shownGain.value = this.gainOf(r));
 		let i = t && this.info.cameras[this.camera ?? 0];
-		i && this.photograph && Hs(e, i, this.photograph);
+		i && this.photograph && Us(e, i, this.photograph);
 	}
 	get shownEigen() {
 		return Math.min(Math.max(0, Math.floor(this.eigen)), this.total - 1);
@@ -4819,29 +4819,29 @@ var Cl = 1.5, wl = .001, Tl = class extends f {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= wl * Math.max(...r);
+		return Math.abs(i) <= Tl * Math.max(...r);
 	}
 	fail(e) {
-		if (kl(e)) return;
+		if (Al(e)) return;
 		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
 			error: new j(t.code, r, t.where)
 		});
 	}
-}, El = new x(), Dl = new A();
-function Ol(e, t) {
-	return Dl.setFromMatrixPosition(e.matrixWorld).applyMatrix4(El.copy(t.matrixWorld).invert()), [
-		Dl.x,
-		Dl.y,
-		Dl.z
+}, Dl = new x(), Ol = new A();
+function kl(e, t) {
+	return Ol.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Dl.copy(t.matrixWorld).invert()), [
+		Ol.x,
+		Ol.y,
+		Ol.z
 	];
 }
-function kl(e) {
+function Al(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var Al = class {
+var jl = class {
 	received = 0;
 	onPush = () => void 0;
 	chunks = [];
@@ -4886,7 +4886,7 @@ var Al = class {
 		return n.buffer;
 	}
 };
-async function jl(e, t, n) {
+async function Ml(e, t, n) {
 	let r = e.getReader();
 	for (n.addEventListener("abort", () => void r.cancel().catch(() => void 0));;) {
 		let { done: e, value: n } = await r.read();
@@ -4896,7 +4896,7 @@ async function jl(e, t, n) {
 	n.throwIfAborted(), t.end();
 }
 // eigenfield-three/src/ranges.ts
-var Ml = 2 ** 20, Nl = 2 ** 25, Pl = 3, Fl = 500, Il = class {
+var Nl = 2 ** 20, Pl = 2 ** 25, Fl = 3, Il = 500, Ll = class {
 	source;
 	arrival;
 	length;
@@ -4910,20 +4910,20 @@ var Ml = 2 ** 20, Nl = 2 ** 25, Pl = 3, Fl = 500, Il = class {
 	}
 	async read(e, t) {
 		let { arrival: n } = this;
-		if (t <= n.received || !this.begun || !this.parted && e <= n.received + Ml) {
+		if (t <= n.received || !this.begun || !this.parted && e <= n.received + Nl) {
 			let r = await n.read(e, t).catch((e) => {
-				if (this.signal.aborted || !(this.parted || this.begun && Rl(e))) throw e;
+				if (this.signal.aborted || !(this.parted || this.begun && zl(e))) throw e;
 			});
 			if (this.begun || this.limit(), r) return r;
 		}
 		if (this.giveUp(), this.source instanceof Blob) return this.slice(this.source, e, t);
 		let r = this.source;
-		return Ll(this.signal, () => this.whole?.read(e, t) ?? this.fetch(r, e, t), () => this.whole === null);
+		return Rl(this.signal, () => this.whole?.read(e, t) ?? this.fetch(r, e, t), () => this.whole === null);
 	}
 	limit() {
 		let { arrival: e } = this;
 		this.begun = !0, e.onPush = () => {
-			e.received >= Nl && e.received < this.length && this.giveUp();
+			e.received >= Pl && e.received < this.length && this.giveUp();
 		}, e.onPush();
 	}
 	giveUp() {
@@ -4950,26 +4950,26 @@ var Ml = 2 ** 20, Nl = 2 ** 25, Pl = 3, Fl = 500, Il = class {
 		return a;
 	}
 	receive(e) {
-		let t = this.whole = new Al();
-		return jl(e, t, this.signal).catch((e) => t.fail(this.signal.aborted ? e : this.broken(t.received, e))), t;
+		let t = this.whole = new jl();
+		return Ml(e, t, this.signal).catch((e) => t.fail(this.signal.aborted ? e : this.broken(t.received, e))), t;
 	}
 	broken(e, t) {
 		return new j("network", `The connection broke at byte ${e} of ${this.length} of the clip; it is tried again when it plays on.`, String(e), { cause: t });
 	}
 };
-async function Ll(e, t, n = () => !0) {
+async function Rl(e, t, n = () => !0) {
 	for (let r = 1;; r++) try {
 		return await t();
 	} catch (t) {
-		if (e.throwIfAborted(), r === Pl || !Rl(t) || !n()) throw t;
-		await new Promise((e) => setTimeout(e, Fl * 2 ** (r - 1))), e.throwIfAborted();
+		if (e.throwIfAborted(), r === Fl || !zl(t) || !n()) throw t;
+		await new Promise((e) => setTimeout(e, Il * 2 ** (r - 1))), e.throwIfAborted();
 	}
 }
-function Rl(e) {
+function zl(e) {
 	return e instanceof j && e.code === "network";
 }
 // eigenfield-three/src/beside.ts
-function zl(e) {
+function Bl(e) {
 	return { read: async (t, n, r) => {
 		let i = e.get(t);
 		if (!i) throw new j("damaged", `The folder has no file ${t}; copy the clip's whole folder.`, t);
@@ -4977,7 +4977,7 @@ function zl(e) {
 		return i.slice(0, r).arrayBuffer();
 	} };
 }
-var Bl = class {
+var Vl = class {
 	scene;
 	signal;
 	arriving = /* @__PURE__ */ new Map();
@@ -4985,7 +4985,7 @@ var Bl = class {
 		this.scene = e, this.signal = t;
 	}
 	read(e, t, n) {
-		return Ll(this.signal, async () => {
+		return Rl(this.signal, async () => {
 			let r = this.arriving.get(e) ?? this.fetch(e, t);
 			try {
 				let i = await r.read(0, n);
@@ -4996,38 +4996,38 @@ var Bl = class {
 		});
 	}
 	fetch(e, t) {
-		let n = new Al();
+		let n = new jl();
 		return this.arriving.set(e, n), this.receive(e, t, n).catch((t) => {
-			n.fail(this.signal.aborted || t instanceof j ? t : Vl(e, t));
+			n.fail(this.signal.aborted || t instanceof j ? t : Hl(e, t));
 		}), n;
 	}
 	async receive(e, t, n) {
 		let r = new URL(e, new URL(this.scene, document.baseURI)), { ok: i, status: a, headers: o, body: s } = await fetch(r, { signal: this.signal }), c = o.get("Content-Encoding") ? null : o.get("Content-Length"), l = i && c !== null && Number(c) !== t;
-		if (i && s && !l) return jl(s, n, this.signal);
-		throw await s?.cancel(), l ? M(e, `${c} bytes of ${t}`) : Vl(e, `The server answered ${a}`);
+		if (i && s && !l) return Ml(s, n, this.signal);
+		throw await s?.cancel(), l ? M(e, `${c} bytes of ${t}`) : Hl(e, `The server answered ${a}`);
 	}
 };
-function Vl(e, t) {
+function Hl(e, t) {
 	return new j("network", `The clip's file ${e} cannot be fetched; put it beside the clip's own. It is tried again when it plays on.`, e, { cause: t });
 }
 // eigenfield-three/src/film-pictures.ts
-var Hl = {
+var Ul = {
 	mimeType: "video/AV1",
 	bits: 10
 };
-async function Ul(e, t, n) {
+async function Wl(e, t, n) {
 	let r = {
 		view: -1,
-		codec: Hl,
+		codec: Ul,
 		textures: 1,
 		pieces: 1,
 		where: n
 	}, i = await ci(ve(e.slice().buffer, n), r, t), a = i[0].picture;
 	if ("data" in a) return a;
 	let o = Ut(a, t);
-	return Ws(i), Wt(o, 4 * t[0], 4, t);
+	return Gs(i), Wt(o, 4 * t[0], 4, t);
 }
-var Wl = class {
+var Gl = class {
 	size;
 	where;
 	user;
@@ -5048,7 +5048,7 @@ var Wl = class {
 	}
 	decode(e, t, n) {
 		if (!n) return;
-		let { turn: r } = this, i = Ul(e, this.size, this.where).then((e) => r === this.turn ? this.user.take(t, () => Promise.resolve(e)) : void 0).catch((e) => {
+		let { turn: r } = this, i = Wl(e, this.size, this.where).then((e) => r === this.turn ? this.user.take(t, () => Promise.resolve(e)) : void 0).catch((e) => {
 			r === this.turn && this.user.failed(e);
 		}).finally(() => {
 			this.decoding.delete(i), this.user.closed();
@@ -5064,11 +5064,11 @@ var Wl = class {
 	dispose() {
 		this.reset();
 	}
-}, Gl = 8, Kl = 2, ql = 2 / 3, Jl = /* @__PURE__ */ new Set([
+}, Kl = 8, ql = 2, Jl = 2 / 3, Yl = /* @__PURE__ */ new Set([
 	"damaged",
 	"truncated",
 	"network"
-]), Yl = class {
+]), Xl = class {
 	timeline;
 	groups;
 	user;
@@ -5100,7 +5100,7 @@ var Wl = class {
 		return this.decoders.reduce((e, t) => e + t.open, 0);
 	}
 	get reach() {
-		return Math.max(this.newestEnd, this.from) + Gl / 2;
+		return Math.max(this.newestEnd, this.from) + Kl / 2;
 	}
 	get busy() {
 		return this.decoders.some(({ busy: e }) => e);
@@ -5196,7 +5196,7 @@ var Wl = class {
 		return e.every((e, t) => e !== null || !this.needs(t));
 	}
 	get hasRoom() {
-		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = this.keysAlone ? this.slots.size < Kl ? Infinity : 0 : Math.max(this.from, this.wanted) + Gl;
+		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = this.keysAlone ? this.slots.size < ql ? Infinity : 0 : Math.max(this.from, this.wanted) + Kl;
 		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }, t) => e || !this.needs(t));
 	}
 	async feedAll() {
@@ -5212,7 +5212,7 @@ var Wl = class {
 			}
 			this.fed = r;
 			let i = this.given?.index === r ? this.given : await this.groups.open(r), a = n - i.first, o = i.units[a] ?? [];
-			a >= i.frames * ql && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a);
+			a >= i.frames * Jl && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a);
 			let s = () => this.decoders.map((e, t) => [e, o[t]]).filter((e, t) => this.needs(t));
 			if (a === 0 && await Promise.all(s().map(([e, t]) => e.start(t))), e !== this.turn) return;
 			this.given = i, this.next = this.keysAlone ? t + i.frames : t + 1;
@@ -5246,7 +5246,7 @@ var Wl = class {
 	fail(e) {
 		let t = e instanceof j && e.code === "codec" ? e : null;
 		if (t && !this.keysAlone) return this.thin(t);
-		if (!(e instanceof j) || !Jl.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(t ? this.keysAlone : e, null);
+		if (!(e instanceof j) || !Yl.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(t ? this.keysAlone : e, null);
 		let n = e.code === "damaged" && this.given?.index === this.fed && !this.tried.has(this.fed), r = this.startOf(Math.max(this.next - 1, 0));
 		this.halt();
 		for (let [e, t] of this.slots) this.isWhole(t.films) || this.forget(e, t);
@@ -5254,7 +5254,7 @@ var Wl = class {
 	}
 	thin(e) {
 		for (let e of this.decoders) e.dispose();
-		this.keysAlone = e, this.meansAlone = !1, this.decoders = this.timeline.films.map(({ size: e, where: t }, n) => new Wl(e, t, this.userOf(n))), this.stop(), this.next = this.startOf(this.from), this.user.thinned(), this.feed();
+		this.keysAlone = e, this.meansAlone = !1, this.decoders = this.timeline.films.map(({ size: e, where: t }, n) => new Gl(e, t, this.userOf(n))), this.stop(), this.next = this.startOf(this.from), this.user.thinned(), this.feed();
 	}
 	rest() {
 		this.stop(), this.next = Infinity;
@@ -5280,7 +5280,7 @@ var Wl = class {
 	reuseOne(e, { room: t }) {
 		t && this.rooms[e]?.push(t);
 	}
-}, Xl = .3, Zl = .2, Ql = 2, $l = class {
+}, Zl = .3, Ql = .2, $l = 2, eu = class {
 	place;
 	read;
 	changed;
@@ -5311,7 +5311,7 @@ var Wl = class {
 		let r = e - this.place.first;
 		if (r < 0 || r >= n.duration) return n.pause();
 		let i = r - n.currentTime;
-		Math.abs(i) > Xl * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max(Ql * i, -.2), Zl)), n.paused && !this.starting && this.start(n);
+		Math.abs(i) > Zl * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max($l * i, -.2), Ql)), n.paused && !this.starting && this.start(n);
 	}
 	rest() {
 		this.audio?.pause();
@@ -5336,48 +5336,48 @@ var Wl = class {
 	}
 };
 // eigenfield-three/src/clip.ts
-async function eu(e, t, n, r) {
-	let i = new uc(e, t, n, r), a = await i.begin();
-	a.motion?.read(0), dc(e, a);
-	let o = await Promise.all(t.films.map(({ size: e, where: t }, n) => Ul(a.units[0][n], e, t))), { sound: s } = t;
+async function tu(e, t, n, r) {
+	let i = new dc(e, t, n, r), a = await i.begin();
+	a.motion?.read(0), fc(e, a);
+	let o = await Promise.all(t.films.map(({ size: e, where: t }, n) => Wl(a.units[0][n], e, t))), { sound: s } = t;
 	return {
 		timeline: t,
 		group: a,
 		films: o,
 		mesh: n,
-		ring: (e) => new Yl(t, i, e),
-		sound: s && ((e) => new $l(s, () => r(s, s.length), e))
+		ring: (e) => new Xl(t, i, e),
+		sound: s && ((e) => new eu(s, () => r(s, s.length), e))
 	};
 }
 // eigenfield-three/src/means.ts
-async function tu(e, t) {
-	let { mean: n, meanSize: r } = e, i = e.precision && await nu(await t(e.precision.view), e.precision);
+async function nu(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await ru(await t(e.precision.view), e.precision);
 	return {
 		pieces: await n.codec.decode(await t(n.view), n, r),
 		precision: i
 	};
 }
-async function nu(e, t) {
+async function ru(e, t) {
 	let { type: n } = Yr(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function ru({ pieces: e, precision: t }) {
-	Ws(e), t?.close();
+function iu({ pieces: e, precision: t }) {
+	Gs(e), t?.close();
 }
 // eigenfield-three/src/packed.ts
-var iu = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", au = 4;
-async function ou(e, t) {
+var au = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", ou = 4;
+async function su(e, t) {
 	let n = new G(e, ""), r = n.key("extensions").key(Se), i = r.key("packed");
 	if (!i.exists) return e;
 	ja(r);
 	let a = Oi(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < au) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, au)).getUint32(0, !0);
-	if (au + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new G(ac(await cu(await t(o.offset + au, s), i.where), i.where), i.where).object(), u = su(new G(c, `${i.where}/lengths`), o, au + s), { packed: d, ...f } = r.object();
+	if (!o || o.length < ou) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, ou)).getUint32(0, !0);
+	if (ou + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new G(oc(await lu(await t(o.offset + ou, s), i.where), i.where), i.where).object(), u = cu(new G(c, `${i.where}/lengths`), o, ou + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
 		bufferViews: [...n.key("bufferViews").items(F).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
@@ -5390,7 +5390,7 @@ async function ou(e, t) {
 		}
 	};
 }
-function su(e, t, n) {
+function cu(e, t, n) {
 	let r = n, i = e.items(F).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
@@ -5402,8 +5402,8 @@ function su(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function cu(e, t) {
-	let n = new TextEncoder().encode(iu), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function lu(e, t) {
+	let n = new TextEncoder().encode(au), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -5422,8 +5422,8 @@ async function cu(e, t) {
 	}
 }
 // eigenfield-three/src/still-textures.ts
-var lu = 3;
-function uu(e) {
+var uu = 3;
+function du(e) {
 	return J(e).flatMap((e, t) => {
 		let n = 0;
 		return e.pictures.map((r) => {
@@ -5437,27 +5437,27 @@ function uu(e) {
 		});
 	}).sort((e, t) => e.first - t.first || e.number - t.number);
 }
-function du(e, t, n) {
-	let r = uu(e), i = n, a = ({ basis: e, picture: n }) => {
+function fu(e, t, n) {
+	let r = du(e), i = n, a = ({ basis: e, picture: n }) => {
 		let r = t(n.view).then((t) => n.codec.decode(t, n, e.size));
 		return r.catch(() => void 0), r;
 	};
 	return {
 		async fill(n) {
-			let { plan: o, signal: s } = n, c = i ?? await Promise.all(Aa(e).map((e) => tu(e, t)));
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(Aa(e).map((e) => nu(e, t)));
 			i = null, c.forEach((e, t) => {
-				n.putMean(t, e), ru(e);
+				n.putMean(t, e), iu(e);
 			});
 			let l = r.filter(({ first: e }) => e < o.usable), u = [], d = 0;
 			try {
 				for (let { number: e, first: t, picture: r } of l) {
 					if (s.aborted) return;
-					for (let e of l.slice(d, d + lu - u.length)) u.push(a(e)), d += 1;
+					for (let e of l.slice(d, d + uu - u.length)) u.push(a(e)), d += 1;
 					let i = await u[0] ?? [];
-					u.shift(), n.putTextures(e, t, i, r), Ws(i), n.announce();
+					u.shift(), n.putTextures(e, t, i, r), Gs(i), n.announce();
 				}
 			} finally {
-				for (let e of u) e.then(Ws).catch(() => void 0);
+				for (let e of u) e.then(Gs).catch(() => void 0);
 			}
 			n.end();
 		},
@@ -5465,41 +5465,41 @@ function du(e, t, n) {
 			let r = 0;
 			for (let { channels: i, bases: a } of e.planes) {
 				let o = e.colours.slice(r, r += i), s = a.find(({ count: e }) => e > n);
-				if (s) return qs(s, n, o, t);
+				if (s) return Js(s, n, o, t);
 			}
 			return Promise.resolve(1);
 		},
 		dispose() {
-			i?.forEach(ru), i = null;
+			i?.forEach(iu), i = null;
 		}
 	};
 }
 // eigenfield-three/src/grid.ts
-function fu(e) {
+function pu(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = pu(e, n, r) ?? (n === r ? null : pu(e, r, n));
+		let r = t / n, i = mu(e, n, r) ?? (n === r ? null : mu(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function pu(e, t, n) {
-	let [r, i] = [hu(e, 0), hu(e, 1)];
-	if (t === 1 && gu(i) > 0 || n === 1 && gu(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => _u(i, e) - _u(i, t));
+function mu(e, t, n) {
+	let [r, i] = [gu(e, 0), gu(e, 1)];
+	if (t === 1 && _u(i) > 0 || n === 1 && _u(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => vu(i, e) - vu(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => _u(r, e) - _u(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => vu(r, e) - vu(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return mu(n, t, (e, t) => _u(r, o(t, e))) && mu(t, n, (e, t) => _u(i, o(e, t))) ? {
+	return hu(n, t, (e, t) => vu(r, o(t, e))) && hu(t, n, (e, t) => vu(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function mu(e, t, n) {
+function hu(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -5509,33 +5509,33 @@ function mu(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function hu(e, t) {
+function gu(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function gu(e) {
+function _u(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var _u = (e, t) => e[t] ?? 0, vu = 1e-6, yu = 32, bu = class {
+var vu = (e, t) => e[t] ?? 0, yu = 1e-6, bu = 32, xu = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = fu(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = pu(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(xu(e), this.isLine ? 0 : xu(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(Su(e), this.isLine ? 0 : Su(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => ju(e, t, this.places) : e === "bilinear" && this.grid ? Nu(this.places, this.grid) : wu(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => Mu(e, t, this.places) : e === "bilinear" && this.grid ? Pu(this.places, this.grid) : Tu(this.places, this.triangles);
 	}
 };
-function xu(e) {
+function Su(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Su(e) {
+function Cu(e) {
 	let t = {
 		camera: [
 			0,
@@ -5555,7 +5555,7 @@ function Su(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function Cu(e, t, n, r, i, a) {
+function wu(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -5563,49 +5563,49 @@ function Cu(e, t, n, r, i, a) {
 		m
 	];
 }
-function wu(e, t) {
+function Tu(e, t) {
 	if (!t.length) {
-		let t = Au(e, ku(e));
-		return (n, r) => Ou(n, r, e, t);
+		let t = ju(e, Au(e));
+		return (n, r) => ku(n, r, e, t);
 	}
-	let n = Eu(e, t, 3), r = Du(t);
+	let n = Du(e, t, 3), r = Ou(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * yu + $(i)] ?? []) {
+		for (let r of n[$(a) * bu + $(i)] ?? []) {
 			let [n, l, u] = [
-				Tu(t, r, 0),
-				Tu(t, r, 1),
-				Tu(t, r, 2)
-			], d = Cu(i, a, e, n, l, u), f = Math.min(...d);
+				Eu(t, r, 0),
+				Eu(t, r, 1),
+				Eu(t, r, 2)
+			], d = wu(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? Ou(i, a, e, r) : Su(c.map((e, n) => [Tu(t, o, n), e]));
+		return s < -1e-9 ? ku(i, a, e, r) : Cu(c.map((e, n) => [Eu(t, o, n), e]));
 	};
 }
-var Tu = (e, t, n) => e[3 * t + n] ?? 0;
+var Eu = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * yu)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * bu)));
 }
-function Eu(e, t, n) {
+function Du(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * yu + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * bu + t]?.push(i);
 	}
 	return r;
 }
-function Du(e) {
+function Ou(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Tu(e, n, r), Tu(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [Eu(e, n, r), Eu(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -5614,7 +5614,7 @@ function Du(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function Ou(e, t, n, r) {
+function ku(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -5629,12 +5629,12 @@ function Ou(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return Su([[o, 1 - c], [s, c]]);
+	return Cu([[o, 1 - c], [s, c]]);
 }
-function ku(e) {
+function Au(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function Au(e, t) {
+function ju(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -5655,7 +5655,7 @@ function Au(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function ju(e, t, n) {
+function Mu(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -5669,12 +5669,12 @@ function ju(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || Mu(n, r, i, a) <= vu) return Ou(e, t, n, Au(n, [
+	if (a < 0 || Nu(n, r, i, a) <= yu) return ku(e, t, n, ju(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = Cu(e, t, n, r, i, a);
+	let [l, u, d] = wu(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -5690,15 +5690,15 @@ function ju(e, t, n) {
 		]
 	};
 }
-function Mu(e, t, n, r) {
+function Nu(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function Nu(e, t) {
+function Pu(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = Au(e, ku(e));
-		return (n, r) => Ou(n, r, e, t);
+		let t = ju(e, Au(e));
+		return (n, r) => ku(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -5707,7 +5707,7 @@ function Nu(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = Eu(e, o.flat(), 4), c = [];
+	let s = Du(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -5715,12 +5715,12 @@ function Nu(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * yu + $(t)] ?? []) {
-			let s = o[a], c = s ? Pu(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * bu + $(t)] ?? []) {
+			let s = o[a], c = s ? Fu(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return Ou(t, n, e, l);
-		let [a, c] = Fu(t, n, e, r);
+		if (!r || i < -1e-9) return ku(t, n, e, l);
+		let [a, c] = Iu(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -5732,7 +5732,7 @@ function Nu(e, t) {
 		};
 	};
 }
-function Pu(e, t, n, r) {
+function Fu(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -5740,7 +5740,7 @@ function Pu(e, t, n, r) {
 	}
 	return i;
 }
-function Fu(e, t, n, r) {
+function Iu(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -5758,14 +5758,14 @@ function Fu(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Iu(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [Iu(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Lu(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [Lu(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function Iu(e) {
+function Lu(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var Lu = class {
+var Ru = class {
 	parser;
 	options;
 	name = Se;
@@ -5778,11 +5778,11 @@ var Lu = class {
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && nl(this.options.renderer);
+		this.options.renderer && rl(this.options.renderer);
 		let { json: e } = this.parser;
-		me(e), Object.assign(e, await ou(e, (e, t) => this.read(e, t)));
+		me(e), Object.assign(e, await su(e, (e, t) => this.read(e, t)));
 		let t = Oa(e), { stream: n } = this.options, r = t.timeline?.groups[0]?.file ? n?.readFile : n?.readGroups;
-		(!t.timeline || r) && (this.views = t.views, t.timeline && t.shown && !await ai("image/avif") ? this.lacks = new j("codec", "This browser decodes no AV1; use a newer browser. The first frame is shown.", "") : (this.scene = t, this.scene.shown || Ru(e)));
+		(!t.timeline || r) && (this.views = t.views, t.timeline && t.shown && !await ai("image/avif") ? this.lacks = new j("codec", "This browser decodes no AV1; use a newer browser. The first frame is shown.", "") : (this.scene = t, this.scene.shown || zu(e)));
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -5803,39 +5803,39 @@ var Lu = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (this.lacks && (e.userData.eigenfieldError = this.lacks), !t) return;
-		let n = zu(e, this.parser), [r] = n;
+		let n = Bu(e, this.parser), [r] = n;
 		if (!r) throw M("/meshes/0", "no node shows it");
-		t.shown && Bc(r.geometry, t.shown);
+		t.shown && Vc(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await Vc(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
+		}, a = t.mesh && await Hc(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
 		if (a) {
-			let e = Hc(a);
+			let e = Uc(a);
 			r.geometry.dispose();
 			for (let t of n) t.geometry = e;
 		}
 		t.sheets && sa(t.sheets, r.geometry);
 		let [s, c, l, u] = await Promise.all([
-			Promise.all(o ? [] : Aa(t).map((e) => tu(e, i))),
+			Promise.all(o ? [] : Aa(t).map((e) => nu(e, i))),
 			Ga(t, i),
 			o ? o.group.omega : $a(t, i),
 			ao(t, i)
-		]), d = c.filter((e, n) => !t.heldOut[n]), f = new bu(Float64Array.from(d.flatMap((e) => lo(t, e.centre))), u, t.extent[1] === 0), p = o ? Aa(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
+		]), d = c.filter((e, n) => !t.heldOut[n]), f = new xu(Float64Array.from(d.flatMap((e) => lo(t, e.centre))), u, t.extent[1] === 0), p = o ? Aa(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
 			scene: t,
-			info: so(t, c, p, f.grid, this.fileBytes(), Uc(r.geometry)),
+			info: so(t, c, p, f.grid, this.fileBytes(), Wc(r.geometry)),
 			meshes: n,
 			meanSizes: p,
 			omega: l,
 			weights: f,
 			clip: o
-		}, h = o ? new Ys(t, o.films) : du(t, i, s);
-		e.userData.eigenfield = new Tl(m, h, this.options);
+		}, h = o ? new Xs(t, o.films) : fu(t, i, s);
+		e.userData.eigenfield = new El(m, h, this.options);
 	}
 	openClip(e, t, n) {
 		let r = this.options.stream;
-		return eu(e, t, n, ({ offset: e, length: t, file: n }, i) => n === null ? r.readGroups(e, i) : r.readFile(n, t, i));
+		return tu(e, t, n, ({ offset: e, length: t, file: n }, i) => n === null ? r.readGroups(e, i) : r.readFile(n, t, i));
 	}
 	fileBytes() {
 		let { groups: e = [], sound: t = null } = this.scene?.timeline ?? {}, n = [...e, ...t ? [t] : []].reduce((e, t) => e + (t.file ? t.length : 0), 0);
@@ -5844,52 +5844,52 @@ var Lu = class {
 		return r.KHR_binary_glTF?.header?.length ?? i.buffers[0]?.byteLength ?? 0;
 	}
 };
-function Ru(e) {
+function zu(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function zu(e, t) {
+function Bu(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		Bu(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		Vu(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function Bu(e) {
+function Vu(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function Vu(e, t = {}) {
+async function Hu(e, t = {}) {
 	let { signal: n } = t;
 	n?.throwIfAborted();
-	let r = new Al(), [i, a] = [new AbortController(), new AbortController()], o = () => {
+	let r = new jl(), [i, a] = [new AbortController(), new AbortController()], o = () => {
 		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
 	};
 	n?.addEventListener("abort", o), i.signal.addEventListener("abort", () => a.abort());
-	let s = Gu(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
+	let s = Ku(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
 	try {
-		let o = await nc(r);
+		let o = await rc(r);
 		if (!Da(o.json)) return {
-			gltf: await Wu(r, o, s),
+			gltf: await Gu(r, o, s),
 			field: null,
 			error: null
 		};
-		let c = e instanceof ArrayBuffer ? r : ((e) => new Il(e, r, o.length, () => a.abort(), i.signal))(e), l = t.files ? zl(t.files) : null, u = await Hu(r, o, c, typeof e == "string" ? new Bl(e, i.signal) : l, t);
+		let c = e instanceof ArrayBuffer ? r : ((e) => new Ll(e, r, o.length, () => a.abort(), i.signal))(e), l = t.files ? Bl(t.files) : null, u = await Uu(r, o, c, typeof e == "string" ? new Vl(e, i.signal) : l, t);
 		n?.throwIfAborted();
 		let { eigenfield: d, eigenfieldError: f } = u.userData;
 		return {
 			gltf: u,
-			field: d instanceof Tl ? d : null,
+			field: d instanceof El ? d : null,
 			error: f instanceof j ? f : null
 		};
 	} catch (e) {
 		throw i.abort(), n?.throwIfAborted(), de(e);
 	}
 }
-async function Hu(e, t, n, r, i) {
+async function Uu(e, t, n, r, i) {
 	let a = new ce(), o = (e, t = n) => async (n, r) => {
 		let i = await e + n;
 		return t.read(i, i + r);
@@ -5899,17 +5899,17 @@ async function Hu(e, t, n, r, i) {
 		total: t.length,
 		read: o(s, e),
 		readGroups: (...e) => o(t.groups())(...e),
-		readFile: (...e) => r?.read(...e) ?? Promise.reject(Uu(e[0]))
+		readFile: (...e) => r?.read(...e) ?? Promise.reject(Wu(e[0]))
 	};
-	return a.register((e) => new Lu(e, {
+	return a.register((e) => new Ru(e, {
 		...i,
 		stream: c
 	})), a.parseAsync(t.text, "");
 }
-function Uu(e) {
+function Wu(e) {
 	return new j("unsupported", `The clip is a folder, and its file ${e} cannot be found from here; make one file of it, with \`eigenfield export\`.`, e);
 }
-async function Wu(e, t, n) {
+async function Gu(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -5921,25 +5921,25 @@ async function Wu(e, t, n) {
 		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Gu(e, t, n, r) {
+async function Ku(e, t, n, r) {
 	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? Ku(e) : await qu(e, n), o = i.getReader();
+	let { body: i, total: a } = e instanceof Blob ? qu(e) : await Ju(e, n), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : Ju(t.received, e);
+			throw n.aborted ? e : Yu(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function Ku(e) {
+function qu(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function qu(e, t) {
+async function Ju(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -5950,7 +5950,7 @@ async function qu(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function Ju(e, t) {
+function Yu(e, t) {
 	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { Tl as EigenField, Lu as EigenfieldPlugin, Rc as Player, Jc as SHEETS, j as SceneError, jo as defaultMemory, Vu as loadEigenfield, po as novelCamera, _o as placeCamera, pe as refuseAddresses };
+export { El as EigenField, Ru as EigenfieldPlugin, zc as Player, Yc as SHEETS, j as SceneError, Mo as defaultMemory, Hu as loadEigenfield, po as novelCamera, _o as placeCamera, pe as refuseAddresses };
