@@ -230,6 +230,7 @@ def test_threads_change_nothing(folder, result):
 
 
 @pytest.mark.parametrize("given_size", [(10, 7), (8, 5), (7, 6)])
+@pytest.mark.slow
 def test_a_board_of_the_wrong_size_is_refused_with_the_right_one(few, given_size, monkeypatch):
     # markers of two families are looked for in vain instead of those of nine, which takes seconds
     monkeypatch.setattr(corners, "_largest_dictionaries", lambda: ["DICT_4X4_1000", "DICT_6X6_1000"])

@@ -95,6 +95,7 @@ def test_near_and_far_are_told_by_occlusion(right, down, names):
     assert_near_before_far(planar, scale)
 
 
+@pytest.mark.slow
 def test_jitter_is_found(jittering):
     _, places, planar = jittering
     assert planar.refined

@@ -236,6 +236,7 @@ def test_too_few_photographs_and_rectified_grids_are_refused(scene):
 @pytest.mark.parametrize(
     ("kind", "words"), [("blank", "too few features"), ("foreign", "share too little"), ("still", "show no depth")]
 )
+@pytest.mark.slow
 def test_photographs_that_make_no_scene_fail_in_one_line(kind, words, scene, tmp_path):
     photos, truth = scene
     pictures = {

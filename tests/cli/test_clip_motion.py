@@ -45,6 +45,7 @@ def clip(filmed):
     return filmed / "clip.glb"
 
 
+@pytest.mark.slow
 def test_a_sequence_of_meshes_becomes_a_clip_that_moves(clip, filmed, run, tmp_path):
     assert run("validate", clip).code == 0
     facts = json.loads(run("info", clip, "--json").out)

@@ -42,6 +42,7 @@ def capture(tmp_path_factory) -> Path:
 
 
 @pytest.mark.parametrize("encoding", ["cp1252", "iso8859-2", "utf-8"])
+@pytest.mark.slow
 def test_verbs_that_print_names(capture, encoding):
     shown = "写真" if encoding == "utf-8" else r"\u5199\u771f"
     scene = capture.parent / "szene ß.glb"

@@ -77,6 +77,7 @@ SLOW = pytest.mark.slow
 
 
 @pytest.mark.parametrize("command", [pytest.param(each, marks=[SLOW] * (" encode " in each)) for each in COMMANDS])
+@pytest.mark.slow
 def test_a_command_that_a_message_gives_runs(command, places, run, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setattr("eigenfield.calibration.motion.features.FEATURE_MIN_MEDIAN_COUNT", 0)  # of small photographs

@@ -264,6 +264,7 @@ def test_a_frame_is_decoded_once_and_keeps_its_mask():
         assert again[1].mask(3).all()
 
 
+@pytest.mark.slow
 def test_a_run_that_was_stopped_goes_on_after_the_last_finished_frame(tmp_path):
     seen = footage(1.0, 0.7)
     whole = encode_footage(seen, MESH, OPTIONS)

@@ -97,6 +97,7 @@ def test_what_is_named_in_pixels_or_by_photographs_stays_with_the_scene(array, m
     assert asked == 2 * [SurfaceOptions(layers=1, triangles=drafts.DRAFT_TRIANGLES)]
 
 
+@pytest.mark.slow
 def test_the_command_writes_a_draft_and_says_what_it_is(row, tmp_path, worth_it, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     assert encode(row) == 0

@@ -232,6 +232,7 @@ def test_a_world_far_from_its_origin_is_said(caplog):
     assert "origin" in caplog.text
 
 
+@pytest.mark.slow
 def test_the_real_size_is_kept_where_it_is_known(capture, folder, tmp_path):
     proxy = folder / "proxy.ply"
     assert "metresPerUnit" not in ef.encode(capture, proxy=proxy, textures=0).settings

@@ -39,6 +39,7 @@ def test_figures_are_measured_of_the_file_that_is_kept(fitted, monkeypatch):
     assert len(encode_scene(made)) <= output.stat().st_size
 
 
+@pytest.mark.slow
 def test_a_size_is_kept_to(fitted, tmp_path, run):
     """Without anything for other viewers, whose bytes go to the pictures."""
     folder, output = fitted

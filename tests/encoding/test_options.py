@@ -180,6 +180,7 @@ def test_options_and_their_fields_by_name_are_the_same(folder):
 
 
 @pytest.mark.parametrize("words", ["--codec png", "--quality 40", "--fit none", "--preset small"])
+@pytest.mark.slow
 def test_the_library_saves_what_the_command_line_does(folder, tmp_path, run, words):
     words = ["--proxy", str(folder / "proxy.ply"), "--atlas", "64", "-n", "2", *words.split()]
     code, _, err = run("encode", folder, "-q", "-o", tmp_path / "cli.glb", *words)
@@ -201,6 +202,7 @@ def test_what_save_is_given():
 @pytest.mark.parametrize(
     "words", ["--preset small -n 2 --residual 30", "--fit none -n 2 --atlas 64 --codec png --residual"]
 )
+@pytest.mark.slow
 def test_a_residual_from_the_library_is_that_of_the_command_line(folder, tmp_path, run, words):
     words = ["--proxy", str(folder / "proxy.ply"), *words.split()]
     code, _, err = run("encode", folder, "-q", "-o", tmp_path / "cli.glb", *words)

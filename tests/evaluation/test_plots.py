@@ -10,6 +10,7 @@ from support.redrawn import write_capture
 from support.scenes import tiny_scene
 
 
+@pytest.mark.slow
 def test_plots_of_scenes_with_little_to_show(tmp_path):
     line = tiny_scene(textures=0, cameras=4, held_out=(1,))
     names = ("$x^{2$ 照片.png", "b" * 90, "_c", "d")

@@ -23,6 +23,7 @@ from support.glb_surgery import CODECS, outcome
 
 
 @pytest.mark.parametrize("codec", CODECS)
+@pytest.mark.slow
 def test_every_length_is_refused_or_drawn_of_the_textures_that_are_there(tmp_path, good, codec):
     data, path = good[codec], tmp_path / "a.glb"
     gltf, binary = glb_surgery.split(data)

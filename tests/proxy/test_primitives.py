@@ -222,6 +222,7 @@ def test_a_sphere_is_found_from_a_careless_box(before_a_wall):
     assert fit.residual < 1.0 and fit.views == 6 and fit.contrast > 0.1
 
 
+@pytest.mark.slow
 def test_fits_that_cannot_be_are_said():
     camera = looking(np.array([0, 0, -5.0]), (0, 0, 0))
     cameras = [camera, looking(np.array([0.5, 0, -5.0]), (0, 0, 0)), looking(np.array([-0.5, 0, -5.0]), (0, 0, 0))]

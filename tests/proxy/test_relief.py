@@ -143,6 +143,7 @@ def bumpy(seed, height=48, width=64):
 
 @settings(max_examples=40)
 @given(seed=st.integers(0, 10_000), tolerance=st.floats(0.02, 0.5))
+@pytest.mark.slow
 def test_every_relief_covers_its_pixels_within_the_tolerance(seed, tolerance):
     d, valid = bumpy(seed)
     if not valid.any():

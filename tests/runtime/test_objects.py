@@ -192,6 +192,7 @@ def test_without_the_extra_one_line_says_what_to_install(run, monkeypatch):
     )
 
 
+@pytest.mark.slow
 def test_s3_holds_photographs_stages_and_scene(s3, run, tmp_path):
     folder = write_capture(tmp_path / "nine")
     put(folder, f"{s3}/nine")

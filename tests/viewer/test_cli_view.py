@@ -131,6 +131,7 @@ def test_the_command_serves_until_it_is_stopped(scene, capture, number):
             Client(port)
 
 
+@pytest.mark.slow
 def test_the_command_keeps_what_it_checked(scene, tmp_path):
     copy = tmp_path / "scene.glb"
     copy.write_bytes(scene.read_bytes())

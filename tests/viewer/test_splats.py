@@ -87,6 +87,7 @@ def scene(request):
     return made[request.param]()
 
 
+@pytest.mark.slow
 def test_a_reader_of_the_extension_draws_what_the_scene_draws(scene, tmp_path):
     count, decibels = write_splats(scene, tmp_path / "a.glb", splats=3000, metres_per_unit=2.0)
     document, splats = read_splats(tmp_path / "a.glb")
