@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 
+import pytest
+
 from eigenfield.evaluation import evaluate
 from eigenfield.evaluation.plots import write_plots
 from support.redrawn import write_capture
