@@ -35,6 +35,7 @@ export interface BesideEvents {
   changed(): void;
   /** A frame is to be drawn. */
   request(): void;
+  /** The same, of something that moves. */
   touch(): void;
   /** A line for people. */
   say(text: string): void;

@@ -10,7 +10,8 @@
 //   finerValue    for each grid coarser than the atlas, all of the atlas: what the grid holds there
 //   finerOpacity  in a scene with sheets, once for all of the atlas: the opacity of the sheets
 // Four numbers share a texel of what is stored: one channel of four eigen textures (decision 13), or four channels of a
-// mean. In `words` a layer is one channel of one texture, and has the two bytes of its codes. Colours are the photographs' own (sRGB-coded) numbers from end to end: no conversion, in or out.
+// mean. In `words` a layer is one channel of one texture, and has the two bytes of its codes. Colours are the photographs'
+// own (sRGB-coded) numbers from end to end: no conversion, in or out.
 
 #define LAYERS 64  // most that one draw sums
 #define LEVEL 1e-4 // a height of no more than this is as good as none
@@ -22,7 +23,8 @@ uniform int firstLayer;
 uniform int sharing;           // 1: each of `entries` has a layer; 4: four channels of a mean share one
 uniform bool words;
 uniform int channels;
-uniform int entries;           // entry e is channel e % channels, of group (in words: texture) e / channels; at most LAYERS
+uniform int entries;           // entry e is channel e % channels, of group (in words: of texture) e / channels;
+                               // at most LAYERS
 uniform vec4 scale[LAYERS];    // value = stored * scale + bias, of each entry: 0 for textures that are not summed
 uniform vec4 bias[LAYERS];
 uniform vec3 colours[LAYERS];  // R, G, B of the value 1 of each channel
@@ -65,16 +67,17 @@ vec4 sumTextures(vec2 own) {
   vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);
   own -= beside * shiftOf(place);
   vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;
-  vec4 weights = vec4(1.0);
+  vec4 four = vec4(1.0), weights = four;
   vec3 sum = vec3(0.0);
   int entry = 0;
   for (int group = 0; entry < entries; group++) {
-    int layer = words ? group / 4 : group;
-    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(firstGroup + layer)), 0.0);
-    if (rayWeights && words) weights = vec4(weights[group % 4]);
+    if (rayWeights && (!words || group % 4 == 0)) {
+      four = textureLod(weightMaps, vec3(at, float(firstGroup + (words ? group / 4 : group))), 0.0);
+    }
+    weights = words ? vec4(four[group % 4]) : four;
     for (int channel = 0; channel < channels; channel++) {
-      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];
-      sum += colours[channel] * dot(weights, four);
+      vec4 read = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];
+      sum += colours[channel] * dot(weights, read);
       entry++;
     }
   }

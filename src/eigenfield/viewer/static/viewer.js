@@ -4274,16 +4274,17 @@ vec4 sumTextures(vec2 own) {
   vec2 view = rayWeights ? viewCoordinates(place) : vec2(0.0);
   own -= beside * shiftOf(place);
   vec2 at = (0.5 + (0.5 + 0.5 * view) * (nodes - 1.0)) / nodes;
-  vec4 weights = vec4(1.0);
+  vec4 four = vec4(1.0), weights = four;
   vec3 sum = vec3(0.0);
   int entry = 0;
   for (int group = 0; entry < entries; group++) {
-    int layer = words ? group / 4 : group;
-    if (rayWeights) weights = textureLod(weightMaps, vec3(at, float(firstGroup + layer)), 0.0);
-    if (rayWeights && words) weights = vec4(weights[group % 4]);
+    if (rayWeights && (!words || group % 4 == 0)) {
+      four = textureLod(weightMaps, vec3(at, float(firstGroup + (words ? group / 4 : group))), 0.0);
+    }
+    weights = words ? vec4(four[group % 4]) : four;
     for (int channel = 0; channel < channels; channel++) {
-      vec4 four = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];
-      sum += colours[channel] * dot(weights, four);
+      vec4 read = textureLod(stored, vec3(own, float(firstLayer + entry / sharing)), 0.0) * scale[entry] + bias[entry];
+      sum += colours[channel] * dot(weights, read);
       entry++;
     }
   }
