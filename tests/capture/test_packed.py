@@ -209,6 +209,9 @@ def test_values_of_arrays(tmp_path):
     savemat(tmp_path / "float.mat", {"lightfield": fine, "disparity": np.ones((3, 3))})
     opened = open_any(tmp_path / "float.mat")
     np.testing.assert_allclose(opened.photograph(4).pixels, fine[1, 1], atol=0.51 / 65535)
+    with h5py.File(tmp_path / "half.h5", "w") as file:
+        file["LF"] = fine.astype(np.float16)
+    np.testing.assert_allclose(open_any(tmp_path / "half.h5").photograph(4).pixels, fine[1, 1], atol=1e-3)
     savemat(tmp_path / "grey.mat", {"LF": views[..., :1]})
     np.testing.assert_array_equal(codes(open_any(tmp_path / "grey.mat"), 8)[..., 2], views[2, 2, ..., 0])
     savemat(tmp_path / "both.mat", {"LF": views, "LF_small": views[:, :, ::2, ::2]})
@@ -226,7 +229,12 @@ def test_what_is_no_array_of_views(tmp_path, monkeypatch):
     assert "2 arrays" in str(refused("views-missing", saved("two.mat", a=views, b=views)))
     assert "24x32x3x3x3" in str(refused("views-missing", saved("turned.mat", LF=views.transpose(2, 3, 4, 0, 1))))
     refused("views-missing", saved("signed.mat", LF=views.astype(np.int32)))
+    refused("views-missing", saved("wide.mat", LF=views.astype(np.uint64)))
     refused("views-missing", saved("text.mat", LF="views"))
+    assert "not from 0 to 1" in str(refused("views-missing", saved("codes.mat", LF=views.astype(float))))
+    holes = views / 255
+    holes[1, 1, 2, 3] = np.nan
+    assert "nan" in str(refused("views-missing", saved("holes.mat", LF=holes)))
     path = saved("large.mat", LF=views)
     monkeypatch.setattr(array5d, "ARRAY_MAX_BYTES", views.size - 1)
     refused("views-large", path)

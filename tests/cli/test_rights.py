@@ -103,3 +103,19 @@ def test_pages_hold_a_file_that_still_says_it(run, tmp_path):
         assert load(tmp_path / "held.glb", 0.0).rights == said
     assert run("export", clip, "--time", "0", "-o", tmp_path / "frame.glb").code == 0
     assert parse_glb((tmp_path / "frame.glb").read_bytes()).json["asset"]["copyright"] == "Ada, CC0"
+
+
+def test_exports_for_other_programs_say_it_where_they_can(run, tmp_path):
+    Usd = pytest.importorskip("pxr.Usd")
+    scene = tmp_path / "scene.glb"
+    save(replace(tiny_scene(size=32), rights=Rights(author="Ada", licence="CC0")), scene, codec="png")
+    assert run("export", scene, "--as", "splats", "--splats", "50", "-o", tmp_path / "splats.glb").code == 0
+    assert parse_glb((tmp_path / "splats.glb").read_bytes()).json["asset"]["copyright"] == "Ada, CC0"
+    assert run("export", scene, "-o", tmp_path / "a.usdz").code == 0
+    stage = Usd.Stage.Open(str(tmp_path / "a.usdz"))
+    assert stage.GetRootLayer().customLayerData == {"author": "Ada", "licence": "CC0"}
+    for kind in ("maps", "obj", "colmap"):
+        assert run("export", scene, "--as", kind, "-o", tmp_path / kind).code == 0
+        listing = json.loads((tmp_path / kind / "eigenfield.json").read_text(encoding="utf-8"))
+        assert listing["rights"] == {"author": "Ada", "licence": "CC0"}
+    assert b"# author: Ada\n" in (tmp_path / "obj/mesh.obj").read_bytes()

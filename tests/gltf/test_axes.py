@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
+from eigenfield.core.rig import Rig
 from eigenfield.core.viewplane import ViewPlane, fit_view_plane
 from eigenfield.gltf import save
 from eigenfield.gltf.axes import capture_to_gltf, opening_view, quaternion
@@ -34,8 +35,14 @@ def test_quaternions_are_rotations(seed):
     assert found[np.argmax(np.abs(found))] > 0
 
 
+def rig_of(cameras, plane=None):
+    none = np.zeros((0, 3), np.int32)
+    names = tuple(f"{number}.png" for number in range(len(cameras)))
+    return Rig(names, tuple(cameras), np.zeros(len(cameras), bool), 0, plane or fit_view_plane(cameras), none)
+
+
 def test_the_array_looks_along_minus_z_with_y_up():
-    turn = capture_to_gltf(fit_view_plane(row_grid(9)))
+    turn = capture_to_gltf(rig_of(row_grid(9)))
     np.testing.assert_allclose(turn @ [0, 0, 1], [0, 0, -1], atol=1e-12)  # the cameras' forward
     np.testing.assert_allclose(turn @ [0, 1, 0], [0, -1, 0], atol=1e-12)  # their down
     np.testing.assert_allclose(np.linalg.det(turn), 1)
@@ -43,12 +50,20 @@ def test_the_array_looks_along_minus_z_with_y_up():
 
 def test_axes_of_any_length_and_angle_give_a_rotation():
     plane = ViewPlane(np.zeros(3), np.array([2, 0.1, 0]), np.array([0.3, -1.5, 0.2]), np.ones(2))
-    turn = capture_to_gltf(plane)
+    turn = capture_to_gltf(rig_of(row_grid(9), plane))
     np.testing.assert_allclose(turn @ turn.T, np.eye(3), atol=1e-12)
     assert np.linalg.det(turn) == pytest.approx(1)
     np.testing.assert_allclose(turn @ plane.right, [np.hypot(2, 0.1), 0, 0], atol=1e-12)
     x, y, z = turn @ plane.up  # in the plane of both, on its own side
     assert y > 1.5 and abs(z) < 1e-12 and x == pytest.approx(plane.right @ plane.up / np.hypot(2, 0.1))
+
+
+@pytest.mark.parametrize("direction", [(1, 0, 0), (0, 1, 0), (0.9, 0.4, 0), (0, 0, 1)])
+def test_a_line_of_cameras_is_upright_wherever_it_climbs(direction):
+    camera = row_grid(1)[0]
+    rig = rig_of([replace(camera, t=camera.t - step * np.array(direction)) for step in (-0.5, 0.0, 0.5)])
+    assert rig.view_plane.is_line
+    np.testing.assert_allclose(capture_to_gltf(rig), np.diag([1, -1, -1]), atol=1e-12)
 
 
 def test_the_opening_view_is_the_photograph_where_gltf_can_say_it():

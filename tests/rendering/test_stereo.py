@@ -21,6 +21,7 @@ from eigenfield.rendering.spherical import vr_boxes
 from eigenfield.rendering.stereo import Baseline, Eyes, half_sphere_side, write_stereo
 from support import viewer_scenes
 from support.clips import numbered_clip
+from support.sounds import opus
 
 DISTANCE = 3.0  # from the cameras' plane
 NONE = {"textures": 0}
@@ -167,7 +168,7 @@ def boxes(data, start=0, end=None):
 
 def inner(data, *names):
     for name in names:
-        data = dict(boxes(data))[name]
+        data = next(content for found, content in boxes(data) if found == name)
     return data
 
 
@@ -198,6 +199,16 @@ def test_half_a_sphere_says_which_half(scene, tmp_path):
     assert inner(sphere, b"svhd") == bytes(4) + b"eigenfield\0"
     assert inner(sphere, b"proj", b"prhd") == bytes(16)
     assert struct.unpack(">IIIII", inner(sphere, b"proj", b"equi")) == (0, 0, 0, 1 << 30, 1 << 30)
+
+
+def test_boxes_are_in_the_track_of_the_pictures_where_there_is_sound(tmp_path):
+    pictures = [np.zeros((32, 64, 3), np.uint8)] * 8
+    for sound in (None, (opus(1.0), 0.0)):
+        write_video(tmp_path / "a.mp4", pictures, Fraction(10), sound=sound, boxes=vr_boxes("vr180"), overwrite=True)
+        assert {b"st3d", b"sv3d"} <= set(entry_boxes((tmp_path / "a.mp4").read_bytes()))
+    with av.open(str(tmp_path / "a.mp4")) as film:
+        assert [stream.type for stream in film.streams] == ["video", "audio"]
+        assert len(list(film.decode(video=0))) == 8
 
 
 def test_the_same_film_with_and_without_boxes_has_the_same_pictures(tmp_path):

@@ -27,7 +27,7 @@ def write(folder: Path) -> None:
     scene = ef.load(folder / "scene.glb")
     write_splats(scene, folder / "splats.glb", splats=COUNT, metres_per_unit=1.0, overwrite=True)
     index = int(scene.rig.encoded[1])
-    camera = camera_of(scene.rig.cameras[index], scene.rig.view_plane)
+    camera = camera_of(scene.rig.cameras[index], scene.rig)
     found = {"K": camera.K.tolist(), "R": camera.R.tolist(), "t": camera.t.tolist()}
     sizes = {"width": camera.width, "height": camera.height}
     (folder / "splats.json").write_text(json.dumps(found | sizes))

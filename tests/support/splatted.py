@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.core.camera import Camera
-from eigenfield.core.viewplane import ViewPlane
+from eigenfield.core.rig import Rig
 from eigenfield.gltf.axes import capture_to_gltf
 
 NAME = "KHR_gaussian_splatting"
@@ -65,9 +65,9 @@ def read_spz(path: Path) -> dict[str, NDArray[np.float64]]:
     return found
 
 
-def camera_of(camera: Camera, plane: ViewPlane, scale: float = 1.0) -> Camera:
+def camera_of(camera: Camera, rig: Rig, scale: float = 1.0) -> Camera:
     """A camera of a capture in the axes and units of the file."""
-    turn = capture_to_gltf(plane)
+    turn = capture_to_gltf(rig)
     return Camera(camera.K, camera.R @ turn.T, scale * camera.t, camera.width, camera.height)
 
 

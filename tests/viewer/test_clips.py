@@ -16,7 +16,7 @@ from PIL import Image
 
 import eigenfield as ef
 from eigenfield.core.clip import Audio
-from eigenfield.core.errors import OptionError
+from eigenfield.core.errors import FormatError, OptionError
 from eigenfield.gltf import load_clip, save
 from eigenfield.rendering import RenderJob, viewpoint
 from eigenfield.viewer import view
@@ -112,6 +112,18 @@ def test_a_folder_is_served_file_by_file_and_a_page_holds_it_as_one_file(tmp_pat
     clip = load_clip(tmp_path / "clip")
     with view(clip, browser=False) as server, urllib.request.urlopen(f"{server.address}scene.glb") as answer:
         assert answer.read() == (tmp_path / "clip.glb").read_bytes()
+
+
+def test_the_folder_of_a_clip_is_a_second_scene_and_no_photographs(file, tmp_path):
+    export(file, tmp_path / "clip", "folder")
+    with view(file, tmp_path / "clip", browser=False) as server:
+        assert urllib.request.urlopen(f"{server.address}second.glb").read() == file.read_bytes()
+
+
+def test_a_plain_file_is_compared_with_no_scene(file, tmp_path):
+    export(file, tmp_path / "plain.glb", "glb", time=0.0)
+    with pytest.raises(FormatError, match="EIGENFIELD_eigen_textures"):
+        view(tmp_path / "plain.glb", file, browser=False)
 
 
 def test_photographs_are_not_shown_beside_a_clip(file, tmp_path):

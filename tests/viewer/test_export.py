@@ -155,7 +155,8 @@ def test_a_page_that_opens_files_offers_the_scenes_that_are_named(run, export, s
     page = (place / "index.html").read_text(encoding="utf-8")
     config = json.loads(re.search(r'id="eigenfield-config">(.*?)</script>', page)[1])
     assert config["title"] == "</title>" and "<title>&lt;/title&gt;</title>" in page
-    assert [sample["name"] for sample in config["samples"]] == ["scene", "50 % & b", "scene"]
+    alike = f"{scene_file.parent.name}/scene"
+    assert [sample["name"] for sample in config["samples"]] == [alike, "50 % & b", alike]
     for sample in config["samples"]:
         with Image.open(place / unquote(sample["picture"])) as picture:
             assert picture.format == "JPEG" and np.asarray(picture).std() > 5
@@ -441,6 +442,60 @@ def test_a_glb_never_takes_the_place_of_its_scene(run, scene_file):
     code, _, err = run("export", scene_file, "-o", scene_file, "--overwrite")
     assert code == 2 and "the scene itself" in err and err.count("\n") == 1
     assert scene_file.read_bytes() == before
+
+
+def test_no_export_takes_the_place_of_a_clip_s_folder(run, clip_file, tmp_path):
+    clip = tmp_path / "clip"
+    assert run("export", clip_file, "--as", "folder", "-o", clip).code == 0
+    before = contents(clip)
+    for words in (["--as", "maps", "-o", clip], ["--as", "glb", "-o", clip / "scene.glb"]):
+        code, _, err = run("export", clip, "--time", "0", "--overwrite", *words)
+        assert code == 2 and "the scene itself" in err and err.count("\n") == 1
+        assert contents(clip) == before
+    assert run("export", clip, "--as", "folder", "-o", clip, "--overwrite").code == 0
+    assert contents(clip) == before
+
+
+def test_a_scene_that_is_missing_or_in_a_store_is_told_as_such(run, scene_file, tmp_path):
+    fsspec = pytest.importorskip("fsspec")
+    there = tmp_path / "a.glb"
+    there.write_bytes(b"")
+    code, _, err = run("export", tmp_path / "missing.glb", "-o", there, "--as", "glb", "--overwrite")
+    assert code == 2 and "does not exist" in err and err.count("\n") == 1
+    fsspec.filesystem("memory").pipe("/scenes/scene.glb", scene_file.read_bytes())
+    for _ in range(2):
+        exports.export("memory://scenes/scene.glb", there, "glb", overwrite=True)
+
+
+def test_names_that_are_no_text(run, scene_file, tmp_path):
+    for name in (b"caf\xe9.html", b"caf\xe9.usdz", b"caf\xe9.obj"):
+        assert run("export", scene_file, "-o", tmp_path / os.fsdecode(name)).code == 0
+    other = tmp_path / os.fsdecode(b"caf\xe9.glb")
+    shutil.copy(scene_file, other)
+    assert run("export", other, "-o", tmp_path / "open", "--as", "app").code == 0
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        (["-o", "a.html", "--url", "https://[x"], "is no address"),
+        (["-o", "a.html", "--url", "https://"], "is no address"),
+        (["-o", "a.glb", "--as", "splats", "--metres-per-unit", "1e40"], "is no length"),
+        (["-o", "a", "--as", "app", "--time", "0"], "instant"),
+    ],
+)
+def test_impossible_values_are_refused_in_a_line(export, words, said):
+    code, err = export(words[1], *words[2:])
+    assert code == 2 and said in err and err.count("\n") == 1
+    assert list(export.place.iterdir()) == []
+
+
+def test_a_time_belongs_to_the_scenes_that_are_clips(run, scene_file, clip_file, tmp_path):
+    for order in ([scene_file, clip_file], [clip_file, scene_file]):
+        assert run("export", *order, "-o", tmp_path / "a.html", "--time", "0", "--overwrite").code == 0
+    for scenes in ([], [clip_file] * 3):
+        code, _, err = run("export", *scenes, "-o", tmp_path / "open", "--as", "app", "--time", "0")
+        assert code == 2 and "--time is not for app" in err
 
 
 def test_without_dracopy_a_line_says_what_to_install(export, monkeypatch):

@@ -90,7 +90,7 @@ def test_the_obj_opens_in_trimesh_and_draws_the_mean(scene, tmp_path, folder):
         assert {p.name for p in tmp_path.iterdir()} == {"a name #1.obj", "a_name__1.mtl", "a_name__1.png"}
     opened = trimesh.load(path, process=False)
     assert opened.faces.shape == scene.proxy.mesh.faces.shape
-    turn = capture_to_gltf(scene.rig.view_plane)
+    turn = capture_to_gltf(scene.rig)
     texture = np.asarray(opened.visual.material.image).astype(np.float32) / 255
     np.testing.assert_allclose(texture, scene.appearance.planes[0].mean, atol=0.5 / 255 + 1e-6)
     uv = np.column_stack([opened.visual.uv[:, 0], 1 - opened.visual.uv[:, 1]]).astype(np.float32)
@@ -229,7 +229,7 @@ def test_a_plain_glb_is_the_proxy_with_its_mean_upright_and_in_metres(scene, tmp
     (mesh,), picture, mode = opened(tmp_path / "a.glb")
     np.testing.assert_array_equal(picture, np.rint(255 * mean_texture(scene).clip(0, 1)).astype(np.float32) / 255)
     assert mode in (None, "OPAQUE") and mesh.faces.shape == scene.proxy.mesh.faces.shape
-    turn = capture_to_gltf(scene.rig.view_plane)
+    turn = capture_to_gltf(scene.rig)
     found = read_mesh(tmp_path / "a.glb")  # by our own reader, which places it as its node says
     off = np.abs(found.vertices[found.faces] - 0.25 * (scene.proxy.mesh.vertices @ turn.T)[scene.proxy.mesh.faces])
     assert draco or off.max() < 1e-5

@@ -14,14 +14,14 @@ import pytest
 import eigenfield as ef
 from eigenfield.capture import open_any
 from eigenfield.capture.readers.hci import read_parameters
-from eigenfield.core.errors import OptionError
+from eigenfield.core.errors import OptionError, OutputError
 from eigenfield.core.viewplane import fit_view_plane
 from eigenfield.gltf import save
 from eigenfield.imaging.metrics import psnr
 from eigenfield.rendering import RenderJob, renderer_of, view_weights
 from eigenfield.rendering.parallel_cameras import parallel_cameras
 from eigenfield.viewer import exports
-from eigenfield.viewer.exports.quilt import quilt_views
+from eigenfield.viewer.exports.quilt import quilt_of, quilt_views
 from support.clips import numbered_clip
 from support.scenes import tiny_scene
 
@@ -56,6 +56,21 @@ def test_a_quilt_for_a_display_has_its_tiles_and_its_shape(scene, name):
     assert pixel * angles[0] / angles[1] == pytest.approx(quilt.aspect, rel=2e-3)
     small = exports.quilt_of(scene, name, (30, 20))
     assert small.width == 30 and small.suffix == quilt.suffix
+
+
+def test_a_quilt_of_one_view_is_seen_from_the_middle(scene):
+    job = RenderJob(scene)
+    one = quilt_of(scene, (1, 1))
+    ((middle, _),) = quilt_views(job, one)
+    np.testing.assert_allclose(middle.centre, scene.rig.view_plane.point(0, 0), atol=1e-9)
+
+
+def test_a_quilt_that_exists_is_refused_before_it_is_drawn(scene, tmp_path, monkeypatch):
+    path, _ = exports.export(scene, tmp_path / "a.png", "quilt", quilt=(2, 1))
+    monkeypatch.setattr(RenderJob, "pixels", lambda *_: pytest.fail("a view is drawn"))
+    with pytest.raises(OutputError) as caught:
+        exports.export(scene, tmp_path / "a.png", "quilt", quilt=(2, 1))
+    assert caught.value.code == "output-exists" and caught.value.path == str(path)
 
 
 def test_a_film_of_quilts_moves_its_views_along_a_path(scene, tmp_path):

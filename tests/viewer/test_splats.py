@@ -100,7 +100,7 @@ def test_a_reader_of_the_extension_draws_what_the_scene_draws(scene, tmp_path):
     for index in scene.rig.encoded:
         camera = scene.rig.cameras[index]
         expected = renderer_of(scene).draw(camera, camera_weights(scene, int(index))).image.clip(0, 1)
-        drawn = draw_splats(splats, camera_of(camera, scene.rig.view_plane, 2.0)).astype(np.float32)
+        drawn = draw_splats(splats, camera_of(camera, scene.rig, 2.0)).astype(np.float32)
         errors.append(np.square(drawn - expected).mean())
     assert -10 * np.log10(np.mean(errors)) == pytest.approx(decibels, abs=0.1) and decibels > 22
 
@@ -134,7 +134,7 @@ def test_more_gaussians_lie_where_there_is_more_to_see():
 def test_a_scene_of_one_colour_keeps_it_and_has_no_holes(tmp_path):
     scene = painted([0.8, 0.4, 0.2])
     write_splats(scene, tmp_path / "a.glb", splats=400)
-    drawn = draw_splats(read_splats(tmp_path / "a.glb")[1], camera_of(scene.rig.cameras[2], scene.rig.view_plane))
+    drawn = draw_splats(read_splats(tmp_path / "a.glb")[1], camera_of(scene.rig.cameras[2], scene.rig))
     inside = drawn[12:-12, 16:-16].reshape(-1, 3)
     np.testing.assert_allclose(inside.mean(axis=0), [0.8, 0.4, 0.2], atol=0.02)
     assert np.abs(inside - inside.mean(axis=0)).max() < 0.12
@@ -145,7 +145,7 @@ def test_axes_are_those_of_the_scene_s_file(tmp_path):
     write_splats(scene, tmp_path / "a.glb", splats=200)
     splats = read_splats(tmp_path / "a.glb")[1]
     made, _ = fit_gaussians(scene, 200)
-    turn = capture_to_gltf(scene.rig.view_plane)
+    turn = capture_to_gltf(scene.rig)
     np.testing.assert_allclose(splats["POSITION"], made.positions @ turn.T, atol=1e-6)
     np.testing.assert_array_equal(splats["COLOR_0"][:, 3], np.rint(255 * splats["OPACITY"][:, 0]) / 255)
 

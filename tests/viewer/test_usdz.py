@@ -44,7 +44,7 @@ def test_mesh_and_mean_are_the_scene_s_upright_and_in_metres(tmp_path):
     stage = opened(tmp_path / "a.usdz")
     assert UsdGeom.GetStageUpAxis(stage) == "Y" and UsdGeom.GetStageMetersPerUnit(stage) == 0.25
     mesh = UsdGeom.Mesh(stage.GetPrimAtPath("/scene/proxy_0"))
-    turn = capture_to_gltf(scene.rig.view_plane)
+    turn = capture_to_gltf(scene.rig)
     np.testing.assert_allclose(np.array(mesh.GetPointsAttr().Get()), scene.mesh.vertices @ turn.T, atol=1e-6)
     assert np.array_equal(np.array(mesh.GetFaceVertexIndicesAttr().Get()), scene.mesh.faces.ravel())
     places = np.array(UsdGeom.PrimvarsAPI(mesh).GetPrimvar("st").Get())

@@ -127,14 +127,16 @@ def command(
     folder  a clip whose groups are files beside it; glb makes it one file again
     app     a folder for a web server: a page that opens files, with any number of SCENEs to choose from
     """
+    from eigenfield.gltf import stores_clip
     from eigenfield.viewer.exports import export
 
     source = click.get_current_context().get_parameter_source
     given: dict[str, Any] = {
         name: value for name, value in options.items() if source(name) is ParameterSource.COMMANDLINE
     }
-    if time is not None and len(scenes) in (1, 2):
-        given["time"] = time.in_clip(scenes[0])
+    if time is not None:  # a page may compare a clip's frame with a scene, in any order
+        clips = [scene for scene in scenes if stores_clip(scene)] or scenes
+        given["time"] = time.in_clip(clips[0]) if clips else 0.0
     with progress_bars(quiet) as progress:
         made, what = export(scenes, output, kind, overwrite=overwrite, progress=progress, **given)
     note(f"wrote {made}: {what}", quiet)

@@ -100,7 +100,7 @@ def _facts(
             "up": plane.up.tolist(),
         },
         "axes": AXES_TEXT,
-        "rights": {name: text for name, text in vars(layout.rights).items() if text},
+        "rights": layout.rights.said,
         "settings": layout.settings,
         "scores": layout.scores,
     }

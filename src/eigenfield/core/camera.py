@@ -110,6 +110,13 @@ class Camera:
         return Camera(k, r, p, self.width, self.height)
 
 
+def nearest_rotation(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(3, 3) the rotation nearest to a matrix, by least squares (polar decomposition)."""
+    u, _, vt = np.linalg.svd(matrix)
+    turn = np.array([1.0, 1.0, np.sign(np.linalg.det(u @ vt))])
+    return (u * turn) @ vt
+
+
 def axis_angles(cameras: Sequence[Camera]) -> NDArray[np.float64]:
     """(V,) degrees between each camera's optical axis and the mean of all; 180 where they have no mean."""
     axes = np.array([camera.R[2] for camera in cameras])

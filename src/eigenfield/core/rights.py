@@ -38,6 +38,11 @@ class Rights(Options):
                 raise OptionError("rights", f"the {name} {fault}", remedy=remedy)
 
     @property
+    def said(self) -> dict[str, str]:
+        """The texts that are not empty, by name."""
+        return {name: text for name, text in vars(self).items() if text}
+
+    @property
     def copyright(self) -> str:
         """One line that credits the author and names the licence; empty where neither is said."""
         return ", ".join(text for text in (self.author, self.licence) if text)

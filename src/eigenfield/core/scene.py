@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import threading
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
@@ -23,6 +22,7 @@ from eigenfield.core.proxy import Proxy
 from eigenfield.core.rig import Rig
 from eigenfield.core.rights import Rights
 
+SCALE_MOST = 1e9  # metres in a unit, and units in a metre: readers of glTF have 32 bits
 T = TypeVar("T")
 
 _lock = threading.RLock()  # of what is derived from any scene
@@ -173,6 +173,7 @@ def scale_of(scene: Scene, metres_per_unit: float | None) -> float:
 
 
 def check_scale(metres_per_unit: float | None) -> None:
-    """Raise OptionError `metres` unless the metres in one unit of the world are None or a positive, finite number."""
-    if metres_per_unit is not None and not 0 < metres_per_unit < math.inf:
-        raise OptionError("metres", f"{metres_per_unit:g} metres in a unit is no length", remedy="say a number above 0")
+    """Raise OptionError `metres` unless the metres in one unit of the world are None or a length for files."""
+    if metres_per_unit is not None and not 1 / SCALE_MOST <= metres_per_unit <= SCALE_MOST:
+        remedy = f"say a number above 0, from {1 / SCALE_MOST:g} to {SCALE_MOST:g}"
+        raise OptionError("metres", f"{metres_per_unit:g} metres in a unit is no length", remedy=remedy)

@@ -7,15 +7,22 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.core.camera import Camera
+from eigenfield.core.camera import Camera, nearest_rotation
 from eigenfield.core.mesh import Mesh
-from eigenfield.core.viewplane import ViewPlane
+from eigenfield.core.rig import Rig
 
 NEAR_PLANE_RATIO = 0.1  # of the near plane's distance to the nearest vertex's depth
 
 
-def capture_to_gltf(plane: ViewPlane) -> NDArray[np.float64]:
-    """(3, 3) rotation: rows are the world directions that become glTF's x (right), y (up), z (against the view)."""
+def capture_to_gltf(rig: Rig) -> NDArray[np.float64]:
+    """(3, 3) rotation: rows are the world directions that become glTF's x (right), y (up), z (against the view).
+
+    They are those of the view plane. A line of cameras may climb, and has the mean axes of its cameras instead.
+    """
+    plane = rig.view_plane
+    if plane.is_line:
+        axes = nearest_rotation(np.mean([camera.R for camera in rig.cameras], axis=0))
+        return axes * np.array([[1.0], [-1.0], [-1.0]])  # x right, y down, z forward, as cameras have them
     right = plane.right / np.linalg.norm(plane.right)
     up = plane.up - (plane.up @ right) * right
     up = up / np.linalg.norm(up)

@@ -154,7 +154,7 @@ def write_nodes(scene: Scene, digits: int) -> tuple[dict[str, Any], list[dict[st
     """The perspective of the reference camera for other viewers; the nodes of the mesh and of that camera, in numbers
     of so many digits."""
     camera = scene.rig.cameras[scene.rig.reference]
-    turn = capture_to_gltf(scene.rig.view_plane)
+    turn = capture_to_gltf(scene.rig)
     perspective, axes = opening_view(camera, scene.proxy.mesh)
     proxy = {"mesh": 0, **_node_rotation(turn, digits)}
     distance = perspective["znear"] / NEAR_PLANE_RATIO

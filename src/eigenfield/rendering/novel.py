@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.core.camera import Camera
+from eigenfield.core.camera import Camera, nearest_rotation
 from eigenfield.core.errors import OptionError
 from eigenfield.core.scene import Scene
 from eigenfield.rendering.weights import place_weights
@@ -41,13 +41,6 @@ def novel_camera(scene: Scene, at: tuple[float, float]) -> Camera:
     rotation = nearest_rotation(R)
     centre = scene.rig.view_plane.point(float(x), float(y))
     return Camera(K, rotation, -rotation @ centre, reference.width, reference.height)
-
-
-def nearest_rotation(matrix: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(3, 3) the rotation nearest to a matrix, by least squares (polar decomposition)."""
-    u, _, vt = np.linalg.svd(matrix)
-    turn = np.array([1.0, 1.0, np.sign(np.linalg.det(u @ vt))])
-    return (u * turn) @ vt
 
 
 def path_points(name: str, frames: int) -> NDArray[np.float64]:

@@ -62,8 +62,7 @@ def _encode(
 ) -> None:
     import av
 
-    stream, number = None, -1
-    heard = None if sound is None else _Sound(container, *sound)
+    stream, heard, number = None, None, -1
     for number, picture in enumerate(pictures):
         planes = yuv420(picture)
         if stream is None:
@@ -74,6 +73,7 @@ def _encode(
             context.thread_count = VIDEO_ENCODER_THREADS
             context.color_primaries = context.color_trc = context.colorspace = VIDEO_BT709
             context.color_range = VIDEO_LIMITED_RANGE
+            heard = None if sound is None else _Sound(container, *sound)  # its track comes after that of the pictures
         stacked = np.concatenate([plane.reshape(-1) for plane in planes])
         frame = av.VideoFrame.from_ndarray(stacked.reshape(-1, planes[0].shape[1]), format="yuv420p")
         frame.color_primaries = frame.color_trc = frame.colorspace = VIDEO_BT709

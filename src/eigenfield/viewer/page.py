@@ -100,15 +100,27 @@ class Beside:
 
     @staticmethod
     def of(scenes: Sequence[object], glb: bytes) -> Beside:
-        """The second of two scenes, which are named by their files, and by their folders too where those are alike."""
-        paths = [
-            Path(one) if isinstance(one, str | os.PathLike) else Path(name)
-            for one, name in zip(scenes, "AB", strict=True)
-        ]
-        names = [path.stem for path in paths]
-        if names[0] == names[1]:
-            names = [f"{path.absolute().parent.name}/{path.stem}" for path in paths]
-        return Beside((names[0], names[1]), glb)
+        """The second of two scenes."""
+        first, second = shown_names(scenes, "AB")
+        return Beside((first, second), glb)
+
+
+def shown_names(scenes: Sequence[object], otherwise: Sequence[str]) -> list[str]:
+    """Names of scenes for people: those of their files, with their folders where two files are called alike.
+
+    Args:
+        scenes: Paths, or values, which have no name.
+        otherwise: Names of values.
+    """
+    paths = [
+        Path(one) if isinstance(one, str | os.PathLike) else Path(name)
+        for one, name in zip(scenes, otherwise, strict=True)
+    ]
+    stems = [path.stem for path in paths]
+    return [
+        stem if stems.count(stem) == 1 else f"{path.absolute().parent.name}/{stem}"
+        for path, stem in zip(paths, stems, strict=True)
+    ]
 
 
 def single_file(

@@ -63,9 +63,7 @@ def view(
     name = "scene.glb" if isinstance(scene, Scene | Clip) else Path(scene).name
     photographs, beside = None, dict[str, ByteSource]()
     second = None
-    if isinstance(capture, Scene | Clip) or (
-        isinstance(capture, str | os.PathLike) and os.fspath(capture).lower().endswith(".glb")
-    ):
+    if isinstance(capture, Scene | Clip) or (isinstance(capture, str | os.PathLike) and _is_scene(capture)):
         if given:
             message = f"--{next(iter(given)).replace('_', '-')} is for a capture, and a second scene is named"
             raise OptionError("no-capture", message, remedy="leave it out")
@@ -74,7 +72,8 @@ def view(
         loaded, data = _opened(scene)
         beside = files_beside(loaded) if isinstance(loaded, Clip) and not isinstance(scene, Clip) else beside
     except FormatError as error:
-        if error.code != "not-a-scene" or capture is not None or isinstance(scene, Scene | Clip):
+        alone = capture is None and second is None and not isinstance(scene, Scene | Clip)
+        if error.code != "not-a-scene" or not alone:
             raise
         log.warning("%s has no eigen textures: it is shown as the plain glTF file that it is", scene)
         data = scene_file(scene).read_bytes()
@@ -105,6 +104,11 @@ def _opened(scene: Scene | Clip | str | os.PathLike[str]) -> tuple[Scene | Clip,
         return clip, StoredBytes(file, 0, file.stat().st_size)
     loaded, data = outline(scene)
     return loaded, without_residual(data)
+
+
+def _is_scene(path: str | os.PathLike[str]) -> bool:
+    """Whether a path names a scene, or the folder of a clip, and not photographs."""
+    return os.fspath(path).lower().endswith(".glb") or scene_file(path) != Path(path)
 
 
 def _second_file(scene: Scene | Clip | str | os.PathLike[str]) -> bytes:

@@ -25,6 +25,7 @@ ARRAY_ENDINGS = (".mat", ".h5", ".hdf5")
 ARRAY_NAME = "lf"  # of the one that is meant where there are several, small or capital
 ARRAY_AXES = 5
 ARRAY_MAX_VIEWS, ARRAY_MIN_PIXELS = 64, 16  # along an axis
+ARRAY_MAX_OVERSHOOT = 0.5  # of floats beyond 0 and 1, which filters leave; 0..255 is no such thing
 ARRAY_MAX_BYTES = 8 * 2**30
 HDF5_HEADS = b"\x89HDF\r\n\x1a\n", b"MATLAB 7.3"
 MATLAB_CLASS = "MATLAB_class"  # an attribute of what MATLAB wrote
@@ -65,10 +66,17 @@ def _read_views(path: Path) -> Views:
         raise CaptureError("views-unreadable", f"is damaged ({why})", path=path, remedy="copy it again") from error
     rows, columns, height, width, channels = views.shape
     fits = rows <= ARRAY_MAX_VIEWS and columns <= ARRAY_MAX_VIEWS and channels in (1, 3, 4)
-    if not fits or min(height, width) < ARRAY_MIN_PIXELS or views.dtype.kind not in "uf" or views.dtype == np.uint32:
+    fits &= views.dtype.kind == "f" or views.dtype in (np.uint8, np.uint16)
+    if not fits or min(height, width) < ARRAY_MIN_PIXELS:
         shape = "x".join(map(str, views.shape))
         raise _missing(path, f"its array of {shape} {views.dtype.name} is none of row, column, y, x and channel")
-    return views[..., :3]
+    views = views[..., :3]
+    if views.dtype.kind != "f":
+        return views
+    least, most = float(views.min()), float(views.max())
+    if not (least >= -ARRAY_MAX_OVERSHOOT and most <= 1 + ARRAY_MAX_OVERSHOOT):  # nor where one is no number
+        raise _missing(path, f"its values go from {least:g} to {most:g}, and not from 0 to 1")
+    return views.astype(np.float32, copy=False)
 
 
 def _missing(path: Path, message: str) -> CaptureError:

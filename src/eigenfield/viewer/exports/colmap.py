@@ -116,7 +116,7 @@ def write_colmap(
         held = {} if points is not None else {"heldOut": [files[i] for i in np.flatnonzero(job.scene.rig.held_out)]}
         held |= {"residual": sorted(exact)} if residual else {}
         named = {redrawn.name: f"images/{file}" for redrawn, file in zip(redrawn_views, files, strict=True)}
-        write_listing(part, "colmap", {"images": named, **held})
+        write_listing(part, "colmap", {"images": named, **held}, job.scene.rights)
 
 
 def _redrawn_views(job: RenderJob, points: NDArray[np.float64] | None) -> list[RedrawnView]:

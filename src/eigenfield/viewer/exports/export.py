@@ -8,6 +8,7 @@ from dataclasses import replace
 from fractions import Fraction
 from pathlib import Path
 from typing import Any, TypeGuard
+from urllib.parse import urlsplit
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,9 +29,11 @@ from eigenfield.gltf import (
     one_file,
     without_residual,
 )
+from eigenfield.gltf.source import scene_file
 from eigenfield.rendering import FLIGHT_FRAMES, RenderJob, path_points
 from eigenfield.rendering.render_jobs import refuse_flight, write_flight
 from eigenfield.runtime.files import atomic_writer, is_numbered, refuse_existing
+from eigenfield.runtime.objects import find_objects
 from eigenfield.viewer.exports.app import Sample, draw_thumbnail, write_app
 from eigenfield.viewer.exports.clip_folder import write_clip_folder
 from eigenfield.viewer.exports.colmap import write_colmap
@@ -44,7 +47,7 @@ from eigenfield.viewer.exports.quilt_film import write_quilt_clip, write_quilt_f
 from eigenfield.viewer.exports.splats import check_splats, write_splats
 from eigenfield.viewer.exports.usdz import check_usd, write_usdz
 from eigenfield.viewer.exports.views import write_views
-from eigenfield.viewer.page import Beside, write_page
+from eigenfield.viewer.page import Beside, shown_names, write_page
 
 PICTURE_OPTIONS = {"resolution", "background", "weights", "filter", "textures", "samples", "renderer"}
 FILM_OPTIONS = "path", "frames", "fps"
@@ -112,6 +115,7 @@ def export(
     chosen = _chosen_kind(output, kind, is_numbered(output))
     _check(chosen, output, options)
     scenes = [scene] if isinstance(scene, Scene | Clip | str | os.PathLike) else list(scene)
+    _refuse_own(scenes, output, chosen)
     if chosen in ("app", "folder") and time is not None:
         raise OptionError("unused-option", f"--time is not for {chosen}", remedy="leave it out")
     if chosen == "app":
@@ -125,9 +129,6 @@ def export(
         points = path_points(options.get("path", FLIGHT_DEFAULT_PATH), options.get("frames", FLIGHT_FRAMES))
     files = guests_files(output) if chosen == "html" and not options.get("laboratory") else [output]
     _refuse(chosen, obj_files(output) if _is_obj(output) else files, points, overwrite)
-    named = None if isinstance(scene, Scene | Clip) else scene
-    if chosen in ("glb", "splats") and named is not None and output.exists() and output.samefile(named):
-        raise OptionError("output-kind", f"{output} is the scene itself", remedy="name another file")
     if chosen == "folder":
         return _write_clip_folder(scene, output, overwrite)
     if chosen == "glb" and time is None and not options and _is_in_files(scene):
@@ -154,11 +155,11 @@ def _write_app(
     """Write the page that opens files, with its samples; where, and what was written."""
     refuse_folder(output, overwrite)
     samples = []
-    for scene in scenes:
+    for scene, name in zip(scenes, shown_names(scenes, ["scene"] * len(scenes)), strict=True):
         if isinstance(scene, Scene | Clip):
-            name, loaded, data = "scene", scene, encode_scene(scene)
+            loaded, data = scene, encode_scene(scene)
         else:
-            name, loaded, data = Path(scene).stem, load_any(scene), one_file(scene)
+            loaded, data = load_any(scene), one_file(scene)
         shown = as_scene(loaded, loaded.timeline.first if isinstance(loaded, Clip) else None)
         samples.append(Sample(name, without_residual(data), draw_thumbnail(shown)))
     write_app(samples, output, overwrite=overwrite, progress=progress, **options)
@@ -195,6 +196,18 @@ def _write_clip_folder(scene: Scene | Clip | str | os.PathLike[str], output: Pat
     write_clip_folder(scene, output, overwrite=overwrite)
     count = len(list((output / "groups").iterdir()))
     return output, f"scene.glb, and a file for each of {count} groups; put it on a web server"
+
+
+def _refuse_own(scenes: Sequence[Scene | Clip | str | os.PathLike[str]], output: Path, kind: str) -> None:
+    """Refuse to replace the file of a scene, or a folder that holds it, but for the same clip as a folder."""
+    place = Path(os.path.realpath(output))
+    for scene in scenes:
+        if isinstance(scene, Scene | Clip) or find_objects(scene) is not None:
+            continue
+        file = Path(os.path.realpath(scene_file(scene)))
+        if place == file or (place in file.parents and kind not in ENDINGS and kind != "folder"):
+            what = "is" if place == file else "holds"
+            raise OptionError("output-kind", f"{output} {what} the scene itself", remedy="name another place")
 
 
 def _is_film(output: Path) -> bool:
@@ -334,5 +347,14 @@ def _check(kind: str, output: Path, given: dict[str, Any]) -> None:
         check_usd()
     if "url" in given and given.get("laboratory"):
         raise OptionError("unused-option", "--url is not for --laboratory", remedy="leave it out")
-    if not str(given.get("url", "https:")).startswith(("https:", "http:")):
+    if "url" in given and not _is_address(given["url"]):
         raise OptionError("url", f"{given['url']} is no address", remedy="give one that begins with https://")
+
+
+def _is_address(url: Any) -> bool:
+    """Whether it names a page on the web."""
+    try:
+        parts = urlsplit(str(url))
+    except ValueError:  # brackets without an address of version 6
+        return False
+    return parts.scheme in ("http", "https") and bool(parts.hostname)

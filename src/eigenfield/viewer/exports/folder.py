@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from eigenfield.core.errors import OutputError
+from eigenfield.core.rights import Rights
 from eigenfield.core.version import __version__
 from eigenfield.runtime.files import flush_folder, output_errors, rename
 from eigenfield.runtime.objects import refuse_objects
@@ -86,12 +87,15 @@ def write_file(path: Path, data: bytes) -> None:
     path.write_bytes(data)
 
 
-def write_listing(folder: Path, kind: str, more: Mapping[str, Any]) -> None:
-    """Write `eigenfield.json`: the kind of export, every file that it wrote, and further entries."""
+def write_listing(folder: Path, kind: str, more: Mapping[str, Any], rights: Rights | None = None) -> None:
+    """Write `eigenfield.json`: the kind of export, whose it is, every file that it wrote, and further entries."""
     files = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
-    document = {"kind": kind, "generator": f"eigenfield {__version__}", **more, "files": [*files, LISTING_FILE]}
-    text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False)
-    (folder / LISTING_FILE).write_text(text + "\n", encoding="utf-8", newline="\n")
+    document: dict[str, Any] = {"kind": kind, "generator": f"eigenfield {__version__}"}
+    document |= {"rights": rights.said} if rights is not None and rights.said else {}
+    text = json.dumps(
+        {**document, **more, "files": [*files, LISTING_FILE]}, indent=1, ensure_ascii=False, allow_nan=False
+    )
+    (folder / LISTING_FILE).write_bytes((text + "\n").encode("utf-8", "replace"))  # names on disk may be no UTF-8
 
 
 def _not_ours(folder: Path) -> str | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import io
+import os
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -92,12 +93,12 @@ def write_guests_page(
         )
     poster, size = draw_poster(scene, POSTER_MAX_WIDTH_PX, at)
     targets = guests_files(output)
-    address = quote(output.name) if url is None else url
+    address = quote(os.fsencode(output.name)) if url is None else url
     tags = {
         "og:type": "website",
         "og:title": title,
         **({} if url is None else {"og:url": url}),
-        "og:image": urljoin(address, quote(targets[0].name)),
+        "og:image": urljoin(address, quote(os.fsencode(targets[0].name))),
         "og:image:type": "image/jpeg",
         "og:image:width": str(size[0]),
         "og:image:height": str(size[1]),

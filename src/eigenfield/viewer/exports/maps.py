@@ -57,7 +57,8 @@ def write_maps(
         for file, data in zip(files, track(drawn, "maps", len(names), progress), strict=True):
             write_file(part / file, data)
         height, width = scene.appearance.atlas
-        write_listing(part, "maps", {"size": [width, height], "maps": dict(zip(names, files, strict=True))})
+        listed = {"size": [width, height], "maps": dict(zip(names, files, strict=True))}
+        write_listing(part, "maps", listed, scene.rights)
 
 
 def alpha_added(scene: Scene) -> Callable[[NDArray[np.float32]], NDArray[np.float32]]:

@@ -98,7 +98,7 @@ def write_obj_folder(
             "obj",
             {
                 "axes": "x right, y up, the cameras look along -z; v upwards",
-                "toCapture": capture_to_gltf(scene.rig.view_plane).T.tolist(),
+                "toCapture": capture_to_gltf(scene.rig).T.tolist(),
                 "sum": OBJ_SUM_NOTE,
                 "mean": "mean.png",
                 "textures": entries,
@@ -108,6 +108,7 @@ def write_obj_folder(
                 },
                 **_places(scene),
             },
+            scene.rights,
         )
 
 
@@ -116,9 +117,14 @@ def _places(scene: Scene) -> dict[str, Any]:
     cameras stand on it, the triangles between them, the reference camera, and the triangles of each sheet."""
     plane, sheets = scene.rig.view_plane, scene.proxy.sheets
     perspective, (_, camera) = write_nodes(scene, NODE_DIGITS)
-    turn = capture_to_gltf(plane)
+    turn = capture_to_gltf(scene.rig)
     return {
-        "viewPlane": {"origin": (turn @ (plane.origin + scene.origin)).tolist(), "extent": plane.extent.tolist()},
+        "viewPlane": {
+            "origin": (turn @ (plane.origin + scene.origin)).tolist(),
+            "right": (turn @ plane.right).tolist(),
+            "up": (turn @ plane.up).tolist(),
+            "extent": plane.extent.tolist(),
+        },
         "places": encoded_places(scene).tolist(),
         "triangles": scene.rig.triangles.tolist(),
         "camera": {
@@ -168,10 +174,11 @@ def _mesh(scene: Scene, material: str) -> bytes:
     mesh = scene.proxy.mesh
     assert mesh.uv is not None
     places = mesh.vertices.astype(np.float64) + scene.origin
-    turned = places @ capture_to_gltf(scene.rig.view_plane).T
+    turned = places @ capture_to_gltf(scene.rig).T
     digits = 15 if scene.origin.any() else 9
     lines = [
         f"# eigenfield {__version__}",
+        *(f"# {name}: {text}" for name, text in scene.rights.said.items()),
         "# x right, y up, the cameras look along -z; lengths as in the capture",
         f"mtllib {material}",
         "o proxy",

@@ -20,7 +20,7 @@ from eigenfield.core.scene import Scene
 from eigenfield.rendering import RenderJob, ViewWeights, view_weights
 from eigenfield.rendering.parallel_cameras import ParallelCameras, parallel_cameras
 from eigenfield.rendering.render_jobs import png
-from eigenfield.runtime.files import write_bytes
+from eigenfield.runtime.files import refuse_existing, write_bytes
 
 QUILT_COLUMNS, QUILT_ROWS = 8, 6
 QUILT_SIDE_PX = 4096  # that every player takes: by default views are made smaller than the cameras' to fit
@@ -141,6 +141,7 @@ def write_quilt(
         OutputError: The file cannot be written.
     """
     path = quilt_file(output, quilt)
+    refuse_existing(path, overwrite)
     whole = draw_quilt(job, quilt, quilt_views(job, quilt), progress)
     write_bytes(path, png(whole), overwrite=overwrite)
     return path
@@ -180,7 +181,9 @@ def quilt_views(
     """
     plane = job.scene.rig.view_plane
     cameras = quilt_cameras(job.scene, quilt) if cameras is None else cameras
-    places = at[0] * (1 - quilt.spread) + np.linspace(-quilt.spread, quilt.spread, quilt.columns * quilt.rows)
+    count = quilt.columns * quilt.rows
+    side = quilt.spread if count > 1 else 0.0
+    places = at[0] * (1 - side) + np.linspace(-side, side, count)
     views = []
     for x in places.tolist():
         camera = cameras.at(plane.point(x, at[1]))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -62,6 +63,7 @@ def _write_layer(scene: Scene, path: Path, scale: float, alpha: bool) -> None:
     UsdGeom.SetStageUpAxis(stage, UsdGeom.Tokens.y)
     UsdGeom.SetStageMetersPerUnit(stage, scale)
     stage.SetMetadata("comment", f"eigenfield {__version__}")
+    stage.GetRootLayer().customLayerData = scene.rights.said
     root = UsdGeom.Xform.Define(stage, "/scene")
     stage.SetDefaultPrim(root.GetPrim())
     material = UsdShade.Material.Define(stage, "/scene/texture")
@@ -87,7 +89,7 @@ def _write_layer(scene: Scene, path: Path, scale: float, alpha: bool) -> None:
         surface.CreateInput("opacity", Sdf.ValueTypeNames.Float).ConnectToSource(opacity)
     shaded = surface.CreateOutput("surface", Sdf.ValueTypeNames.Token)
     material.CreateSurfaceOutput().ConnectToSource(shaded)
-    turn = capture_to_gltf(scene.rig.view_plane)
+    turn = capture_to_gltf(scene.rig)
     for number, part in enumerate(mesh_parts(scene.proxy)):
         turned = Mesh((part.vertices.astype(np.float64) @ turn.T).astype(np.float32), part.faces, part.uv)
         made = UsdGeom.Mesh.Define(stage, f"/scene/proxy_{number}")
@@ -113,11 +115,13 @@ def _fill(made: object, mesh: Mesh) -> None:
 
 
 def _pack(folder: Path, place: Path) -> None:
-    """A package of the layer and its picture."""
+    """A package of the layer and its picture, which is made where names are UTF-8, as USD wants them."""
     from pxr import Sdf
 
+    made = folder / "scene.usdz"
     for name in (LAYER_FILE, PICTURE_FILE):
         os.utime(folder / name, (USDZ_TIME_SECONDS, USDZ_TIME_SECONDS))
-    with Sdf.ZipFileWriter.CreateNew(str(place)) as writer:
+    with Sdf.ZipFileWriter.CreateNew(str(made)) as writer:
         for name in (LAYER_FILE, PICTURE_FILE):
             writer.AddFile(str(folder / name), name)
+    shutil.copyfile(made, place)

@@ -60,7 +60,7 @@ def write_views(
         for file, data in zip(files, track(drawn, "views", len(files), progress), strict=True):
             write_file(part / file, data)
         write_file(part / "parameters.cfg", _parameters(scene, cameras, (rows, columns), step).encode())
-        write_listing(part, "views", {"rows": rows, "columns": columns})
+        write_listing(part, "views", {"rows": rows, "columns": columns}, scene.rights)
     return rows, columns
 
 

@@ -46,7 +46,7 @@ def fit_gaussians(scene: Scene, count: int | None = None, progress: Progress | N
     cameras = [scene.rig.cameras[index] for index in chosen]
     pictures = parallel_map(lambda index: _picture(scene, index), chosen)
     gaussians = place_gaussians(scene, cameras, count)
-    return _fitted(gaussians, cameras, pictures, capture_to_gltf(scene.rig.view_plane), progress)
+    return _fitted(gaussians, cameras, pictures, capture_to_gltf(scene.rig), progress)
 
 
 def _cameras(scene: Scene) -> list[int]:

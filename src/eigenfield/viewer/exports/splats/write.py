@@ -12,12 +12,14 @@ from scipy.spatial.transform import Rotation
 from eigenfield.core.arguments import checked
 from eigenfield.core.errors import OptionError
 from eigenfield.core.progress import Progress
+from eigenfield.core.rights import Rights
 from eigenfield.core.scene import Scene, scale_of
 from eigenfield.core.version import __version__
 from eigenfield.gltf.accessors import FLOAT, UINT8
 from eigenfield.gltf.axes import capture_to_gltf
 from eigenfield.gltf.buffer import Buffer
 from eigenfield.gltf.container import glb_blocks, json_bytes
+from eigenfield.gltf.rights import with_rights
 from eigenfield.gltf.write_geometry import bounds_of
 from eigenfield.imaging.colour import linear_of_srgb
 from eigenfield.imaging.metrics import to_codes
@@ -64,12 +66,12 @@ def write_splats(
     refuse_attributes(scene.appearance.channels)
     made, decibels = fit_gaussians(scene, splats, progress)
     scale = scale_of(scene, metres_per_unit)
-    turned = _turned(made, capture_to_gltf(scene.rig.view_plane), scale)
+    turned = _turned(made, capture_to_gltf(scene.rig), scale)
     if output.suffix.lower() == ".spz":
         with atomic_files([output], overwrite=overwrite) as (place,):
             _write_spz(turned, place)
     else:
-        write_bytes(output, _glb(turned, output), overwrite=overwrite)
+        write_bytes(output, _glb(turned, scene.rights, output), overwrite=overwrite)
     return len(made), decibels
 
 
@@ -99,7 +101,7 @@ def _quaternions(gaussians: Gaussians) -> NDArray[np.float64]:
     return np.asarray(Rotation.from_matrix(gaussians.rotations).as_quat(canonical=True))
 
 
-def _glb(gaussians: Gaussians, output: Path) -> bytes:
+def _glb(gaussians: Gaussians, rights: Rights, output: Path) -> bytes:
     """A primitive of points, whose colours (COLOR_0, linear as glTF has them) are for viewers without the extension."""
     buffer, positions = Buffer(), gaussians.positions.astype(np.float32)
     shown = (gaussians.harmonics[:, 0] * SH_ZERO + 0.5).clip(0, 1).astype(np.float64)
@@ -128,7 +130,7 @@ def _glb(gaussians: Gaussians, output: Path) -> bytes:
         "bufferViews": buffer.views,
         "buffers": [{"byteLength": buffer.length}],
     }
-    return b"".join(glb_blocks(json_bytes(gltf), b"".join(buffer.parts), output))
+    return b"".join(glb_blocks(json_bytes(with_rights(gltf, rights)), b"".join(buffer.parts), output))
 
 
 def _write_spz(gaussians: Gaussians, place: Path) -> None:
