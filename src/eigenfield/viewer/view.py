@@ -72,8 +72,8 @@ def view(
         loaded, data = _opened(scene)
         beside = files_beside(loaded) if isinstance(loaded, Clip) and not isinstance(scene, Clip) else beside
     except FormatError as error:
-        alone = capture is None and second is None and not isinstance(scene, Scene | Clip)
-        if error.code != "not-a-scene" or not alone:
+        compared = capture is not None or second is not None
+        if error.code != "not-a-scene" or compared or isinstance(scene, Scene | Clip):
             raise
         log.warning("%s has no eigen textures: it is shown as the plain glTF file that it is", scene)
         data = scene_file(scene).read_bytes()
