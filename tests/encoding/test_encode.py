@@ -261,10 +261,11 @@ def test_uv_ssim_takes_the_fewest_textures_that_reach_it(folder, capture):
     [("none", {"texture maps", "mean", "inner products", "eigen textures"}),
      ("photographs", {"photographs", "fit luma", "fit chroma", "code luma", "code chroma"})],
 )  # fmt: skip
-def test_progress_is_told_from_start_to_end(folder, capture, fit, stages):
+def test_progress_is_told_from_start_to_end(folder, capture, fit, stages, tmp_path):
+    """In a work folder that is not there yet, too."""
     reported = {}
     ef.encode(
-        capture, proxy=folder / "proxy.ply", atlas=64, textures=2, fit=fit,
+        capture, proxy=folder / "proxy.ply", atlas=64, textures=2, fit=fit, work=tmp_path / "new" / "work",
         progress=lambda stage, done, total: reported.setdefault(stage, []).append((done, total)),
     )  # fmt: skip
     assert stages <= set(reported)

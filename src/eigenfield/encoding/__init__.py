@@ -16,6 +16,7 @@ from eigenfield.core.progress import Progress
 from eigenfield.encoding.options import EncodeOptions
 from eigenfield.encoding.target import Target
 from eigenfield.reconstruction import SurfaceOptions
+from eigenfield.runtime.files import make_folder
 from eigenfield.runtime.objects import find_objects, refuse_objects
 
 if TYPE_CHECKING:
@@ -119,6 +120,8 @@ def encode(
         check_residual(capture.cameras, resolved.residual)
 
     folder = None if work is None or find_objects(work) else Path(work)  # scratch files stay on this machine
+    if folder is not None:
+        make_folder(folder)
     plan = plan_encoding(capture, proxy, options, folder, progress)
     scene = encode_projected(plan, folder, progress, workers) if projected else encode_fitted(plan, folder, progress)
     scene = replace(scene, scores=measure_scene(scene, plan, folder, progress))
