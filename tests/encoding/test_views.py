@@ -24,9 +24,9 @@ def photographed(cameras):
     return CalibratedInMemory(InMemory(pictures), cameras)
 
 
-def chosen(cameras, vertices=None, **options):
+def chosen(cameras, mesh=None, **options):
     views = select_views(photographed(cameras), EncodeOptions(**options).resolved())
-    return usual_reference(views, bumpy_square(12).vertices if vertices is None else vertices)
+    return usual_reference(views, bumpy_square(12) if mesh is None else mesh)
 
 
 def closer(camera, metres):
@@ -54,7 +54,22 @@ def test_one_that_sees_the_scene_much_larger_is_no_reference():
 
 
 def test_a_scene_that_no_camera_sees_changes_nothing():
-    assert chosen(list(row_grid(9)), bumpy_square(12).vertices - np.float32([0, 0, 9])) == MIDDLE
+    mesh = bumpy_square(12)
+    assert chosen(list(row_grid(9)), replace(mesh, vertices=mesh.vertices - np.float32([0, 0, 9]))) == MIDDLE
+
+
+def test_a_camera_that_sees_nothing_is_no_reference():
+    cameras = list(row_grid(9))
+    back = np.diag([-1.0, 1.0, -1.0])
+    cameras[MIDDLE] = replace(cameras[MIDDLE], R=back @ cameras[MIDDLE].R, t=back @ cameras[MIDDLE].t)
+    assert chosen(cameras) in (1, 3, 5, 7)
+
+
+def test_a_camera_sees_triangles_whose_corners_are_outside_its_frame():
+    square, cameras = bumpy_square(2), list(row_grid(9))
+    square = replace(square, vertices=square.vertices * np.float32(2.7))
+    cameras[0] = closer(cameras[0], -9)  # the only one that sees the corners
+    assert chosen(cameras, square) == MIDDLE
 
 
 def test_wide_views_are_as_good_beside_tele_views():

@@ -164,7 +164,7 @@ def _prepare_sheets(
 
 def _at_usual_reference(views: CaptureViews, options: EncodeOptions, mesh: Mesh) -> CaptureViews:
     """The views with the reference camera that was asked for, or that of `usual_reference`."""
-    return views if options.reference else views.with_reference(usual_reference(views, mesh.vertices))
+    return views if options.reference else views.with_reference(usual_reference(views, mesh))
 
 
 def _simplified_by_pictures(views: CaptureViews, options: EncodeOptions) -> Callable[[Mesh], Mesh | None]:

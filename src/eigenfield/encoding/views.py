@@ -14,10 +14,12 @@ from eigenfield.capture.holdout import held_out_cameras
 from eigenfield.core.camera import Camera
 from eigenfield.core.camera_names import named_camera
 from eigenfield.core.errors import CaptureError, OptionError
+from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import CalibratedObservations, Observations, cameras_of, select_cameras
 from eigenfield.core.rig import Rig
 from eigenfield.core.viewplane import find_grid, fit_view_plane
 from eigenfield.encoding.options import EncodeOptions
+from eigenfield.imaging.raster import rasterise_view
 from eigenfield.reconstruction.array import looks_one_way
 from eigenfield.rendering import delaunay_triangles
 
@@ -102,23 +104,23 @@ def select_views(capture: CalibratedObservations, options: EncodeOptions) -> Cap
     return CaptureViews(capture, make_rig(capture.names, cameras, held, reference))
 
 
-def usual_reference(views: CaptureViews, points: NDArray[np.float32]) -> int:
-    """The encoded camera nearest the centre of those that do not see a scene much larger than others do.
+def usual_reference(views: CaptureViews, mesh: Mesh) -> int:
+    """The encoded camera nearest the centre of those that see the scene, but not much larger than others do.
 
     What an atlas made for a close view holds, a wide view shows in so few pixels that it cannot determine it.
-
-    Args:
-        points: (n, 3) of the scene.
     """
     rig = views.rig
-    few = points[:: max(1, len(points) // REFERENCE_MAX_POINTS)]
+    few = mesh.vertices[:: max(1, len(mesh.vertices) // REFERENCE_MAX_POINTS)]
     scales = np.array([_pixels_per_unit(camera, few) for camera in rig.encoded_cameras])
     if not (scales > 0).any():
         return rig.reference
     usual = REFERENCE_MAX_SCALE_RATIO * float(np.percentile(scales[scales > 0], REFERENCE_SCALE_PERCENTILE))
     places = rig.view_plane.coordinates([camera.centre for camera in rig.encoded_cameras])
     distance = np.where((scales > 0) & (scales <= usual), np.linalg.norm(places, axis=1), np.inf)
-    return rig.reference if scales[rig.encoded_reference] <= usual else int(rig.encoded[np.argmin(distance)])
+    own = scales[rig.encoded_reference]
+    # of a coarse mesh a camera may see triangles without their corners
+    seen = own > 0 or (rasterise_view(mesh, rig.cameras[rig.reference]).face >= 0).any()
+    return rig.reference if seen and own <= usual else int(rig.encoded[np.argmin(distance)])
 
 
 def _pixels_per_unit(camera: Camera, points: NDArray[np.float32]) -> float:
