@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import eigenfield as ef
 from eigenfield.capture import open_capture
@@ -16,11 +17,13 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy
 from eigenfield.encoding import left_out as left_out_module
 from eigenfield.encoding.left_out import interpolation, neighbour_parallax, others_around, spread_inside
+from eigenfield.encoding.verdict import score_words
 from eigenfield.encoding.views import make_rig
 from eigenfield.gltf import load, save
 from eigenfield.imaging.metrics import psnr
-from eigenfield.rendering import Renderer, ViewWeights
-from support.captures import write_capture
+from eigenfield.rendering import Renderer, ViewWeights, draw_texture
+from support.captures import backdrop, shaded_texture, write_capture
+from support.observations import CalibratedInMemory, InMemory
 from support.program import call
 from support.scenes import row_grid
 
@@ -89,6 +92,37 @@ def test_many_cameras_near_each_other_are_drawn_by_the_finished_scene(tmp_path, 
     monkeypatch.setattr(left_out_module, "NEIGHBOUR_MAX_PARALLAX_RATIO", 0.001)
     some = encoded(folder, fit="none").scores["between"]
     assert some["cameras"] == 1 and some["psnr_luma_at_least"] == pytest.approx(whole["psnr_luma_at_least"], abs=1)
+
+
+def test_cameras_left_out_that_show_nothing_are_passed_over(tmp_path):
+    """Two of nine cameras on a line are left out, of which first one, then both are hidden."""
+    mesh, first = backdrop(), row_grid(1, 136, 128)[0]
+    cameras = [replace(first, t=np.array([0.6 - 0.1 * index - 0.006 * index**2, 0, 3.0])) for index in range(9)]
+    pictures = [draw_texture(mesh, shaded_texture(i, 9), camera).image for i, camera in enumerate(cameras)]
+    one, other = spread_inside(make_rig([str(i) for i in range(9)], cameras, np.zeros(9, bool), 4))
+
+    def scores(*hidden):
+        masks = [np.zeros((128, 136), np.float32) if index in hidden else None for index in range(9)]
+        scene = ef.encode(CalibratedInMemory(InMemory(pictures, masks), cameras), mesh, textures=2, fit="none")
+        save(scene, tmp_path / "scene.glb", overwrite=True)
+        return load(tmp_path / "scene.glb").scores
+
+    between = scores(one)["between"]
+    assert between["cameras"] == 1 and between["widest"][0] == f"camera {other}" and between["psnr_luma_at_least"] > 20
+    unknown = scores(one, other)
+    assert "between" not in unknown and unknown["image"]["encoded"]["cameras"] == 7
+    assert score_words(unknown) == [f"{unknown['image']['encoded']['psnr']:.1f} dB in captured views"]
+
+
+def test_held_out_photographs_that_show_nothing_leave_the_estimate(tmp_path):
+    folder = write_capture(tmp_path / "hidden", row_grid(6, 136, 128))
+    path = folder / "images" / "view_05.png"
+    with Image.open(path) as picture:
+        picture.putalpha(0)
+        picture.save(path)
+    scores = encoded(folder, fit="none", hold_out="view_05.png").scores
+    assert scores["image"]["held_out"] == {"cameras": 0, "psnr": None}
+    assert scores["between"]["psnr_luma_at_least"] > 10
 
 
 def test_of_many_cameras_those_around_each_are_taken():

@@ -49,3 +49,13 @@ def test_words() -> None:
     dense = {"image": CAPTURED, "between": {"cameras": 12, "psnr": 34.2}}
     assert score_words(dense) == ["35.1 dB in captured views", "about 34 dB between them"]
     assert score_words({}) == []
+
+
+def test_photographs_that_show_nothing_are_passed_over() -> None:
+    unseen = {"cameras": 0, "psnr": None}
+    scores = {"image": {"encoded": unseen, "held_out": unseen}}
+    assert score_words(scores) == [] and verdict_of_scores(scores) is None
+    scores["between"] = {"psnr_luma_at_least": 26.2}
+    assert score_words(scores) == ["at least about 26 dB of luma between them"]
+    found = verdict_of_scores(scores)
+    assert found is not None and found.word == "fair"

@@ -73,16 +73,20 @@ def measure_scene(
     image = {"encoded": _drawn(scene, plan, encoded[some].tolist())}
     held_out = np.flatnonzero(rig.held_out).tolist()
     if held_out:
-        return {"image": {**image, "held_out": _drawn(scene, plan, held_out)}}
+        image["held_out"] = _drawn(scene, plan, held_out)
+        if image["held_out"]["cameras"]:
+            return {"image": image}
     left_out = spread_inside(rig)
     if not is_sparse(plan):
         drawn = _drawn(scene, plan, encoded[left_out].tolist(), partial(_weights_of_others, scene))
         return {"image": image, "between": drawn}
     values = _drawn_by_others(plan, left_out, work, progress)
-    worst = left_out[int(np.argmin(values))]
+    if not values:
+        return {"image": image}
+    worst = min(values, key=values.__getitem__)
     widest = [rig.names[encoded[worst]], rig.names[encoded[farthest_neighbour(rig, worst)]]]
-    at_least = round(float(np.mean(values)), 2)
-    return {"image": image, "between": {"cameras": len(left_out), "psnr_luma_at_least": at_least, "widest": widest}}
+    at_least = round(float(np.mean(list(values.values()))), 2)
+    return {"image": image, "between": {"cameras": len(values), "psnr_luma_at_least": at_least, "widest": widest}}
 
 
 def _drawn(
@@ -113,8 +117,9 @@ def _weights_of_others(scene: Scene, camera: int) -> ViewWeights:
 
 def _drawn_by_others(
     plan: EncodePlan, left_out: Sequence[int], work: Path | None, progress: Progress | None
-) -> list[float]:
-    """dB of luma for each camera left out, drawn from the others: of many cameras from those around it."""
+) -> dict[int, float]:
+    """dB of luma for each camera left out, drawn from the others: of many cameras from those around it. Cameras that
+    show nothing of the scene have none."""
     rig, size = plan.views.rig, (plan.atlas[1], plan.atlas[0])
     others = sorted(others_around(rig, left_out))
     order = [*others, *left_out]
@@ -140,9 +145,9 @@ def _drawn_by_others(
         weights = np.concatenate([block.weights, interpolation(rig, others, left_out) @ block.weights])
         model = replace(model, blocks=[replace(block, weights=weights.astype(np.float32))])
         equations = residual(data, model, NOTHING_WANTED)
-    at = range(len(others), len(order))
     squares, pixels = equations.squares, equations.pixels
-    return [psnr_of(squares[i : i + 1], pixels[i : i + 1]) if pixels[i] else np.inf for i in at]
+    seen = [(camera, slice(i, i + 1)) for i, camera in enumerate(left_out, len(others)) if pixels[i]]
+    return {camera: psnr_of(squares[one], pixels[one]) for camera, one in seen}
 
 
 def _first(data: FitData, count: int) -> FitData:

@@ -59,10 +59,10 @@ def verdict_beforehand(parallax_ratio: float, overlap: float, remedy: str) -> Ve
 
 def score_words(scores: Mapping[str, Any]) -> list[str]:
     """The scores of `measure_scene` as parts of a line for people."""
-    image, between = scores.get("image", {}), scores.get("between", {})
-    words = [f"{image['encoded']['psnr']:.1f} dB in captured views"] if image.get("encoded") else []
-    if image.get("held_out"):
-        words.append(f"{image['held_out']['psnr']:.1f} dB between them (held out)")
+    encoded, held_out, between = _psnr(scores, "encoded"), _psnr(scores, "held_out"), scores.get("between", {})
+    words = [] if encoded is None else [f"{encoded:.1f} dB in captured views"]
+    if held_out is not None:
+        words.append(f"{held_out:.1f} dB between them (held out)")
     elif "psnr_luma_at_least" in between:
         words.append(f"at least about {between['psnr_luma_at_least']:.0f} dB of luma between them")
     elif between.get("psnr") is not None:
@@ -71,6 +71,12 @@ def score_words(scores: Mapping[str, Any]) -> list[str]:
 
 
 def _between(scores: Mapping[str, Any]) -> float | None:
-    held_out, between = scores.get("image", {}).get("held_out"), scores.get("between", {})
-    figure = held_out["psnr"] if held_out else between.get("psnr_luma_at_least", between.get("psnr"))
+    held_out, between = _psnr(scores, "held_out"), scores.get("between", {})
+    figure = between.get("psnr_luma_at_least", between.get("psnr")) if held_out is None else held_out
     return None if figure is None else float(figure)
+
+
+def _psnr(scores: Mapping[str, Any], kind: str) -> float | None:
+    """Of the pictures of a kind; None where there are none, or none of them shows any of the scene."""
+    found: float | None = (scores.get("image", {}).get(kind) or {}).get("psnr")
+    return found
