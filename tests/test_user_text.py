@@ -22,7 +22,7 @@ from eigenfield.cli import drawing
 from eigenfield.cli.capture_options import _parse_grid, _parse_layers
 from eigenfield.cli.common import pair_of_numbers
 from eigenfield.cli.export import _parse_quilt
-from eigenfield.core.camera_names import named_camera
+from eigenfield.core.camera_names import named_camera, named_cameras
 from eigenfield.core.errors import EigenfieldError
 from eigenfield.core.rights import Rights
 from eigenfield.encoding.target import Target, parse_size
@@ -32,6 +32,7 @@ from eigenfield.proxy.primitives.sphere_fit import parse_region
 from support.fuzzed import QUIET
 
 NAMES = "a.png", "b.png", "c.png", "d.png", "e.png"
+COMMAS = "a,b.png", "c.png", "d,,e.png"
 PLACES = np.array([[0.0, 0], [1, 0], [0, 1], [1, 1], [2, 2]])
 DIGITS = "9" * 5000
 BADLY = [
@@ -81,6 +82,7 @@ OPTIONS = {
     "grid": (as_option(_parse_grid), "17x17"),
     "hold-out": (lambda text: held_out_cameras(text, NAMES, PLACES), "every:5"),
     "hold-out names": (lambda text: held_out_cameras(text, NAMES, PLACES), "a,b.png"),
+    "leave-out": (lambda text: named_cameras(text, COMMAS, "leave-out"), "a,b.png,c"),
     "layers": (as_option(_parse_layers), "12"),
     "length": (lambda text: checkerboard(5, 7, *parse_length(text)), "40.5mm"),
     "pattern": (compile_pattern, "view_{row}_{col}*.png"),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -108,6 +110,8 @@ def test_photographs_are_left_out_as_advised_or_by_name(series, monkeypatch, cap
     assert leave_out(kept, "advised", False) is kept
     assert capsys.readouterr().err == "no photograph does harm: none is left out\n"
     assert len(leave_out(capture, "IMG_0, IMG_4.png", True)) == NUMBER - 2
+    commas = replace(capture, shots=tuple(replace(shot, name=f"no, {shot.name}") for shot in capture.shots))
+    assert leave_out(commas, "no, IMG_0, no, IMG_4.png", True).names == commas.names[1:4]
     for rule in ("IMG_9.png", "IMG_0,IMG_1,IMG_2"):
         with pytest.raises(OptionError) as caught:
             leave_out(capture, rule, True)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eigenfield.core.camera import Camera
-from eigenfield.core.camera_names import named_camera
+from eigenfield.core.camera_names import named_camera, named_cameras
 from eigenfield.core.errors import OptionError
 
 K = np.array([[90.0, 1, 52], [0, 100, 38], [0, 0, 1]])
@@ -30,3 +30,14 @@ def test_a_camera_is_called_as_its_photograph():
     with pytest.raises(OptionError) as caught:
         named_camera("a", names, "view")
     assert caught.value.code == "view" and caught.value.remedy == "nearest are a.png, A.jpg, a.tif"
+
+
+def test_cameras_are_named_with_commas_which_names_may_hold_too():
+    names = ("a.png", "b.png", "12.03, 14.05.jpg", "12.03, 14.06.jpg", "a, b,c.png")
+    found = {text: named_cameras(text, names, "view") for text in (
+        "", " , ", "b.png,a.png", "a, B.jpg,", ",".join(names), "12.03, 14.06, a,12.03, 14.05.JPG", "a, b", "a, b,c,b",
+    )}  # fmt: skip
+    assert list(found.values()) == [[], [], [1, 0], [0, 1], [0, 1, 2, 3, 4], [3, 0, 2], [0, 1], [4, 1]]
+    with pytest.raises(OptionError, match=r"called 12\.03; nearest") as caught:
+        named_cameras("a,12.03, 14.07", names, "view")
+    assert caught.value.code == "view"

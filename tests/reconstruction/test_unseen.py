@@ -51,6 +51,13 @@ def test_names_follow_the_order_of_all_photographs(capture):
     assert rule_for(capture, None, frozenset()) is None
 
 
+def test_names_of_held_out_photographs_may_hold_commas(tmp_path):
+    names = tuple(f"Foto 12.03.21, 14 05 {k:02d}.jpg" for k in range(10))
+    photos = PhotoSet(tmp_path, tuple(Shot(name, tmp_path / name, 64, 48) for name in names), None, (), "folder")
+    held, left = held_out_names("every:5", photos), without(photos, names[:1])
+    assert held_out_names(rule_for(left, "every:5", held), left) == held == {names[2], names[7]}
+
+
 def test_rows_and_columns_are_not_known_of_bare_photographs(tmp_path):
     shots = tuple(Shot(f"{k}.png", tmp_path / f"{k}.png", 64, 48) for k in range(9))
     photos = PhotoSet(tmp_path, shots, None, (), "folder")

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.core.camera_names import named_camera
+from eigenfield.core.camera_names import named_cameras
 from eigenfield.core.errors import OptionError
 from eigenfield.core.viewplane import find_grid
 
@@ -20,7 +20,7 @@ def held_out_cameras(rule: str | None, names: Sequence[str], coordinates: NDArra
     Args:
         rule: `odd`: the views with an odd row or an odd column of a grid. `every:K`: every K-th in the capture's
             order, from number K // 2 on, so that the first is not among them. Otherwise names, with or without
-            their endings, separated by commas.
+            their endings, separated by commas, as of `named_cameras`.
         coordinates: (Nc, 2) on the view plane.
 
     Raises:
@@ -43,8 +43,7 @@ def held_out_cameras(rule: str | None, names: Sequence[str], coordinates: NDArra
             raise OptionError("hold-out", f"{rule}: K must be a number of 2 or more", remedy="for example every:5")
         held[int(step) // 2 :: int(step)] = True
     else:
-        wanted = [name.strip() for name in rule.split(",") if name.strip()]
-        held[[named_camera(name, names, "hold-out") for name in wanted]] = True
+        held[named_cameras(rule, names, "hold-out")] = True
     if (~held).sum() < HOLDOUT_MIN_ENCODED_CAMERAS:
         raise OptionError(
             "hold-out",

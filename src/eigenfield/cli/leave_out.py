@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, TypeVar
 import click
 
 from eigenfield.cli.common import first_names, note
-from eigenfield.core.camera_names import named_camera
+from eigenfield.core.camera_names import named_cameras
 from eigenfield.core.errors import OptionError, one_line
 
 if TYPE_CHECKING:
@@ -55,8 +55,7 @@ def leave_out(capture: C, rule: str | None, quiet: bool) -> C:
         if not found:
             note("no photograph does harm: none is left out", quiet)
     else:
-        wanted = [name.strip() for name in rule.split(",") if name.strip()]
-        out = {named_camera(name, names, "leave-out") for name in wanted}
+        out = set(named_cameras(rule, names, "leave-out"))
         note(f"left out: {first_names([one_line(names[index]) for index in sorted(out)], 5)}", quiet)
     kept = [index for index in range(len(names)) if index not in out]
     if len(kept) < LEAVE_OUT_MIN_LEFT:

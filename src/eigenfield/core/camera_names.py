@@ -30,10 +30,36 @@ def named_camera(name: str, names: Sequence[str], option: str) -> int:
     Raises:
         OptionError: No camera, or more than one, is called so; it names those most like it.
     """
-    if name in names:
-        return list(names).index(name)
-    alike = [index for index, other in enumerate(names) if name_stem(other) in (name_key(name), name_stem(name))]
+    alike = _called(name, names)
     if len(alike) == 1:
         return alike[0]
     near = [names[index] for index in alike[:3]] or difflib.get_close_matches(name, names, n=3, cutoff=0.0)
     raise OptionError(option, f"no camera is called {name}", remedy=f"nearest are {', '.join(near)}")
+
+
+def named_cameras(text: str, names: Sequence[str], option: str) -> list[int]:
+    """The indices of cameras that are named with commas between them.
+
+    Names may hold commas themselves: of what could be meant, the longest name is.
+
+    Raises:
+        OptionError: As `named_camera`.
+    """
+    parts, found = text.split(","), []
+    most = 1 + max((name.count(",") for name in names), default=0)
+    while parts:
+        runs = [",".join(parts[:count]).strip() for count in range(min(most, len(parts)), 0, -1)]
+        # an ending is not compared, and must not pass for one: "a.jpg,b" is no a.png
+        fitting = (run for run in runs if any(run.count(",") == names[i].count(",") for i in _called(run, names)))
+        name = next(fitting, runs[-1])
+        if name:
+            found.append(named_camera(name, names, option))
+        del parts[: name.count(",") + 1]
+    return found
+
+
+def _called(name: str, names: Sequence[str]) -> list[int]:
+    """The index of the camera that is called so; else of all that are but for their ending."""
+    if name in names:
+        return [list(names).index(name)]
+    return [index for index, other in enumerate(names) if name_stem(other) in (name_key(name), name_stem(name))]
