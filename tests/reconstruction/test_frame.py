@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+import json
+
 import numpy as np
 import pytest
 from PIL import Image
 
-from eigenfield.capture import open_any
+from eigenfield.capture import open_any, open_capture
 from eigenfield.capture.photographs.colour import encode_srgb
 from eigenfield.imaging.colour import linear_of_srgb
-from eigenfield.reconstruction.frame import read_pictures
-from support.captures import write_array
+from eigenfield.reconstruction.frame import has_masks, read_masks, read_pictures
+from eigenfield.reconstruction.layered import capture_fault
+from support.captures import frame_of, write_array
+from support.scenes import row_grid
 
 
 @pytest.fixture
@@ -40,3 +44,37 @@ def test_small_differences_of_exposure_and_exceptions_stay(photos, stops, step):
     for path, picture in zip(sorted(photos.iterdir()), pictures, strict=True):
         with Image.open(path) as file:
             assert np.array_equal(picture, np.asarray(file))
+
+
+@pytest.mark.parametrize("k1", [0.0, 0.05])
+def test_alpha_is_a_mask_and_the_border_of_a_lens_is_none(k1, tmp_path):
+    cameras = row_grid(4, 64, 48)
+    frames = [{**frame_of(camera, f"{index}.png"), "k1": k1} for index, camera in enumerate(cameras)]
+    (tmp_path / "transforms.json").write_text(json.dumps({"frames": frames}), encoding="utf-8")
+
+    def opened(hidden, masks=None):
+        """With hidden columns at the left of the last photograph alone."""
+        for index in range(4):
+            pixels = np.full((48, 64, 4), 255, np.uint8)
+            pixels[:, : hidden if index == 3 else 0, 3] = 0
+            Image.fromarray(pixels).save(tmp_path / f"{index}.png")
+        return open_capture(tmp_path, masks=masks)
+
+    shown = opened(hidden=0)
+    assert (shown.photograph(0).mask is None) == (k1 == 0)
+    assert read_masks(shown) is None and capture_fault(shown) is None
+    cut = opened(hidden=20)
+    assert capture_fault(cut) == "photographs with masks have no layers" and not has_masks(cut, most=3)
+    masks = read_masks(cut)
+    assert (masks[:3] == 255).all() and (masks[3, :, :16] == 0).all() and (masks[3, 5:-5, 24:-5] == 255).all()
+    folder = tmp_path / "masks"
+    folder.mkdir()
+    for index in range(4):
+        Image.new("L", (64, 48), 255).save(folder / f"{index}.png")
+    assert read_masks(opened(hidden=0, masks=folder)) is None
+
+
+def test_photographs_that_cannot_hide_anything_are_not_decoded(photos):
+    path = min(photos.iterdir())
+    path.write_bytes(path.read_bytes()[:200])
+    assert not has_masks(open_any(photos))

@@ -112,7 +112,7 @@ def test_photographs_with_masks_have_no_sheets(photos, tmp_path, made):
     masks = tmp_path / "masks"
     masks.mkdir()
     for path in photos.iterdir():
-        Image.new("L", (96, 96), 255).save(masks / path.name)
+        Image.fromarray(np.pad(np.full((96, 90), 255, np.uint8), ((0, 0), (6, 0)))).save(masks / path.name)
     with pytest.raises(OptionError, match="masks"):
         reconstruct(open_any(photos, masks=masks), surface="layers")
 

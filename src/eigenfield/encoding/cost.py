@@ -145,7 +145,7 @@ def _estimation(capture: Any, settings: SurfaceOptions, atlas: bool) -> list[str
         found += ["array", "relief"] if one_way and settings.surface != "poisson" else all_around
     elif one_way:
         found += ["array"]
-    may_have_layers = settings.layers != 1 and capture_fault(capture) is None
+    may_have_layers = settings.layers != 1 and capture_fault(capture, most=1) is None  # cut-outs are alike
     if settings.surface in ("auto", "layers") and may_have_layers:
         found += ["trial"] if settings.layers is None else []
         found += ["layers"]

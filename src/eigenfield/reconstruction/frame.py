@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import cv2
@@ -13,13 +14,17 @@ from scipy.ndimage import distance_transform_edt
 from eigenfield.calibration.harm import HARM_EXPOSURE_MAX_PART, HARM_EXPOSURE_STOPS
 from eigenfield.capture import Capture, LightField
 from eigenfield.capture.photographs.colour import encode_srgb
+from eigenfield.capture.photographs.decoded import decode_with_mask
+from eigenfield.capture.photographs.read import read_header
 from eigenfield.core.camera import Camera
+from eigenfield.core.observations import Photograph
 from eigenfield.imaging.colour import linear_of_srgb
-from eigenfield.runtime.parallel import parallel_map
+from eigenfield.runtime.parallel import parallel_map, parallel_stream
 
 FRAME_MAX_TOTAL_PIXELS = 120_000_000  # of all photographs together; larger captures are reduced for depth estimation
 FRAME_EXPOSURE_QUANTILE = 0.75  # of all photographs' brightness, which the others get: dark ones lose less than bright
 FRAME_DARKEST_CODE = 4  # a darker median says nothing about exposure
+ALPHA_UNKNOWN_FORMATS = ("JPEG XL", "TIFF")  # whose headers may say nothing of alpha
 
 
 def common_frame(capture: Capture) -> tuple[tuple[int, int], tuple[int, int]]:
@@ -90,19 +95,41 @@ def filled_pictures(capture: Capture) -> NDArray[np.uint8]:
     return result
 
 
-def read_masks(capture: Capture) -> NDArray[np.uint8] | None:
-    """(n, H, W, 3) uint8 masks of the photographs, 255 where they are valid; None if there are none.
+def has_masks(capture: Capture, most: int | None = None) -> bool:
+    """Whether a mask or alpha hides any pixel of a photograph.
+
+    Args:
+        most: So many photographs are looked at; None: all. Those that cannot have either are not decoded.
+
+    Raises:
+        CaptureError: A photograph or a mask cannot be read.
+    """
+    indices = range(len(capture) if most is None else min(most, len(capture)))
+    return any(mask is not None for mask in parallel_stream(partial(_own_mask, capture), indices))
+
+
+def _own_mask(capture: Capture, index: int) -> NDArray[np.float32] | None:
+    """(H, W) what hides pixels of a photograph as it is stored, by mask and alpha; None where nothing does.
 
     The border that the removal of a lens leaves empty is no mask: other views of the array see behind it.
     """
+    source = capture.sources[index]
+    if source.mask is None and source.picture is None:
+        header = read_header(source.path)
+        if not (header.alpha or header.format in ALPHA_UNKNOWN_FORMATS):
+            return None
+    return Photograph.of(*decode_with_mask(source, *capture.sizes[index])).mask
+
+
+def read_masks(capture: Capture) -> NDArray[np.uint8] | None:
+    """(n, H, W, 3) uint8 masks of the photographs, 255 where they are valid; None where they hide nothing."""
     whole, small = common_frame(capture)
     result = np.full((len(capture), small[1], small[0], 3), 255, np.uint8)
 
     def fill(index: int) -> bool:
-        source = capture.sources[index]
-        if source.mask is None and source.lens is not None:
-            return False
-        mask = capture.photograph(index).mask
+        mask = _own_mask(capture, index)
+        if mask is not None and capture.sources[index].lens is not None:
+            mask = capture.photograph(index).mask
         if mask is None:
             return False
         result[index] = _fit_to_frame(np.rint(mask * 255).astype(np.uint8), whole, small)[..., None]

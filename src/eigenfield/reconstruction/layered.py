@@ -18,7 +18,7 @@ from eigenfield.core.errors import CaptureError, OptionError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.proxy import Proxy
 from eigenfield.reconstruction.array import AlignedArray, array_depths, inverse_depths
-from eigenfield.reconstruction.frame import filled_pictures, resized_cameras
+from eigenfield.reconstruction.frame import filled_pictures, has_masks, resized_cameras
 from eigenfield.reconstruction.layers import (
     LAYERS_COUNTS,
     LAYERS_DENSE_MIN_GAIN_DB,
@@ -37,20 +37,32 @@ from eigenfield.reconstruction.unseen import without
 log = logging.getLogger("eigenfield.reconstruction")
 
 
-def capture_fault(capture: Capture) -> str | None:
-    """Why photographs can have no sheets; None if they can, as far as their cameras are known."""
-    if any(source.mask is not None for source in capture.sources):
+def capture_fault(capture: Capture, most: int | None = None) -> str | None:
+    """Why photographs can have no sheets; None if they can, as far as their cameras are known.
+
+    Args:
+        most: As of `has_masks`.
+
+    Raises:
+        CaptureError: As `has_masks`.
+    """
+    fault = None if capture.light_field is None else layers_fault(capture.light_field.cameras)
+    if fault is None and has_masks(capture, most):
         return "photographs with masks have no layers"
-    return None if capture.light_field is None else layers_fault(capture.light_field.cameras)
+    return fault
 
 
-def check_capture(capture: Capture) -> None:
+def check_capture(capture: Capture, most: int | None = None) -> None:
     """Refuse photographs that can have no sheets, as far as their cameras are known.
+
+    Args:
+        most: As of `has_masks`.
 
     Raises:
         OptionError: `surface`.
+        CaptureError: As `has_masks`.
     """
-    fault = capture_fault(capture)
+    fault = capture_fault(capture, most)
     if fault is not None:
         raise OptionError("surface", fault, remedy="leave out --surface layers")
 
@@ -119,7 +131,7 @@ def asked_count(run: StageRunner, source: LayerSource) -> int:
     Raises:
         OptionError: `surface`: the capture can have no sheets.
     """
-    check_capture(source.shown)
+    check_capture(source.shown, most=0)  # `check_settings` has looked for masks
     if run.settings.layers is not None:
         return run.settings.layers
     counts, scores, _ = _trial(run, source, None, -np.inf)
