@@ -15,7 +15,7 @@ from eigenfield.capture import open_any, open_path
 from eigenfield.capture.film import open_film
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.photoset import PhotoSet
-from eigenfield.capture.readers.video import decode_video
+from eigenfield.capture.readers.video import decode_video, to_rgb
 from eigenfield.core.errors import CaptureError, EigenfieldError, OptionError
 from eigenfield.imaging.png import png_bytes
 from support.filmed import (
@@ -462,3 +462,22 @@ def test_the_key_frames_of_a_video_are_known(tmp_path):
     film, shown = open_film(tmp_path / "a.mp4"), list(decode_video(tmp_path / "a.mp4"))
     assert film.keys == tuple(number for number, one in enumerate(shown) if one.frame.key_frame) and len(film.keys) > 2
     assert list(film.seconds) == [pytest.approx(one.frame.time) for one in shown]
+
+
+@pytest.mark.parametrize(("name", "codec"), [("a.mts", "libx264"), ("a.mpg", "mpeg2video")])
+def test_frames_of_a_stream_in_which_seeking_goes_too_far(tmp_path, name, codec):
+    write_video(tmp_path / name, 40, 25, codec=codec)
+    film, shown = open_film(tmp_path / name), [to_rgb(one) for one in decode_video(tmp_path / name)]
+    assert len(film.stamps) == len(shown) == 40
+    for number in (39, 38, 20, 3, 37):
+        film.close()
+        pixels, damaged = film.read(number)
+        assert not damaged and np.array_equal(pixels, shown[number]), number
+
+
+def test_an_avi_that_does_not_state_the_order_of_its_frames_is_refused(tmp_path):
+    write_video(tmp_path / "a.avi", 12)
+    assert "encode it anew" in str(refused("video-unreadable", tmp_path / "a.avi", call=open_film))
+    write_video(tmp_path / "b.avi", 12, codec="mpeg4")
+    film, shown = open_film(tmp_path / "b.avi"), [to_rgb(one) for one in decode_video(tmp_path / "b.avi")]
+    assert all(np.array_equal(film.read(number)[0], shown[number]) for number in range(12))

@@ -76,14 +76,14 @@ def hci(folder: Path, cfg: str | bytes | None = CFG, count: int = 9, **size: int
     return folder
 
 
-def write_video(path: Path, frames: int, rate: int = 10, camera: int = 0) -> list[np.ndarray]:
+def write_video(path: Path, frames: int, rate: int = 10, camera: int = 0, codec: str = "libx264") -> list[np.ndarray]:
     """A gradient that grows brighter and changes its colour with every frame."""
     path.parent.mkdir(parents=True, exist_ok=True)
     width, height = 64, 48
     x = np.linspace(0, 1 - 0.1 * camera, width)[None, :, None] * np.ones((height, 1, 1))
     pictures = []
     with av.open(str(path), "w") as container:
-        stream = container.add_stream("libx264", rate=Fraction(rate), options={"crf": "4", "g": "5", "bf": "2"})
+        stream = container.add_stream(codec, rate=Fraction(rate), options={"crf": "4", "g": "5", "bf": "2"})
         stream.width, stream.height, stream.pix_fmt = width, height, "yuv420p"
         for number in range(frames):
             colour = np.array([0.2 + 0.02 * number, 0.5 - 0.01 * number, 0.4])

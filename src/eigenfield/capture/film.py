@@ -97,7 +97,7 @@ class Film:
             later = next((key for key in self.keys if key > index), None)
             if error.code != "video-unreadable" or later is None:
                 raise
-            self._open(float((self.stamps[later] + Fraction(1, 2)) * self.base))
+            self._open(self._moment(later))
         if self._shown is None:
             raise CaptureError(
                 "video-short",
@@ -108,15 +108,24 @@ class Film:
         return self._shown, self._shown.damaged or _stamp(self._shown) != self.stamps[index]
 
     def _go_to(self, index: int) -> None:
-        key = self.keys[bisect_right(self.keys, index) - 1]
+        place = bisect_right(self.keys, index) - 1
         here = None if self._shown is None else bisect_left(self.stamps, _stamp(self._shown))
-        if here is None or here > index or here + FILM_MAX_SKIP < key:
-            self._open(float((self.stamps[index] + Fraction(1, 2)) * self.base))
-            if self._shown is not None and _stamp(self._shown) > self.stamps[index]:  # sought too far
-                self._open(0)
-        assert self._frames is not None
-        while self._shown is not None and _stamp(self._shown) < self.stamps[index]:
-            self._shown = next(self._frames, None)
+        starts: list[float | int | None] = [None]  # on from here
+        if here is None or here > index or here + FILM_MAX_SKIP < self.keys[place]:
+            # In MPEG streams seeking may end behind the frame, or lack what it is built on: then a key frame sooner
+            starts = [self._moment(index), self._moment(self.keys[max(place - 1, 0)]), 0]
+        for start in starts:
+            if start is not None:
+                self._open(start)
+            assert self._frames is not None
+            while self._shown is not None and _stamp(self._shown) < self.stamps[index]:
+                self._shown = next(self._frames, None)
+            if self._shown is not None and _stamp(self._shown) == self.stamps[index] and not self._shown.damaged:
+                return
+
+    def _moment(self, index: int) -> float:
+        """Seconds at which a frame is shown for certain."""
+        return float((self.stamps[index] + Fraction(1, 2)) * self.base)
 
     def _open(self, time: int | float) -> None:
         self._frames = decode_video(self.path, time)
@@ -135,6 +144,8 @@ def open_film(path: Path) -> Film:
     with video_errors(path), av.open(str(path), metadata_errors="replace") as container:
         stream = find_film(container)
         found = [] if stream is None else _stamps(container, stream)
+        if stream is not None and container.format.name == "avi":
+            _refuse_guessed_times(stream, path)
         if stream is not None and found and stream.time_base is not None:
             start = stream.start_time or 0
             order = sorted({(stamp - start, key) for stamp, key in found})
@@ -167,6 +178,18 @@ def _rate_of(stream: av.VideoStream, steps: NDArray[np.float64]) -> Fraction:
         return stream.guessed_rate
     frames = float(np.maximum(np.rint(steps * middle), 1).sum())
     return as_rate(frames / float(steps.sum()), max(RATE_TOLERANCE, RATE_END / frames))
+
+
+def _refuse_guessed_times(stream: av.VideoStream, path: Path) -> None:
+    """Raise CaptureError `video-unreadable` where an AVI, which states no times, has frames in another order than they
+    are shown. Of MPEG-4 FFmpeg knows it from the pictures; of these codecs it takes the order of the file."""
+    if stream.codec_context.name in ("h264", "hevc") and stream.codec_context.has_b_frames:
+        raise CaptureError(
+            "video-unreadable",
+            "is an AVI that does not state in which order its frames are shown",
+            path=path,
+            remedy="encode it anew as MP4 (a copy of its stream would not do)",
+        )
 
 
 def _stamps(container: av.container.InputContainer, stream: av.VideoStream) -> list[tuple[int, bool]]:
