@@ -437,6 +437,33 @@ def test_a_picture_of_another_size_is_named(tmp_path):
     assert "000000.png" in str(error)
 
 
+@pytest.mark.parametrize("left", [0, 50])  # bytes: no header, or one without its picture
+def test_a_damaged_picture_is_masked_out_and_the_one_before_stands_in(tmp_path, caplog, left):
+    folder_a_camera(tmp_path, frames=6)
+    calibration(tmp_path / CALIBRATION_FILE, {c: [(f"cam_{c}/000000.png", None)] for c in range(3)})
+    for number in (2, 3):
+        file = tmp_path / "cam_1" / f"{number:06d}.png"
+        file.write_bytes(file.read_bytes()[:left])
+    footage = opened(tmp_path)
+    for _ in range(2):
+        assert [seen(footage, number)[1] for number in range(1, 5)] == [
+            (1, 1, True), (1, 1, False), (1, 1, False), (1, 4, True),
+        ]  # fmt: skip
+    assert [footage.tracks[1].small(number, 8) is None for number in range(1, 5)] == [False, True, True, False]
+    assert footage.instant(2).as_stored == ()
+    lines = [record.getMessage() for record in caplog.records if "masked out" in record.getMessage()]
+    assert len(lines) == 2 and all(f"00000{n}.png" in line for n, line in zip((2, 3), lines, strict=True))
+    first = opened(tmp_path, "2:")  # nothing else is known of an instant that begins with one
+    assert seen(first, 0) == [(0, 2, True), (1, 1, False), (2, 2, True)]
+
+
+def test_pictures_that_are_all_damaged_are_named(tmp_path):
+    folder_a_camera(tmp_path, frames=2)
+    for file in (tmp_path / "cam_1").iterdir():
+        file.write_bytes(file.read_bytes()[:50])
+    assert "000001.png" in str(refused("image-truncated", 1, call=opened(tmp_path).instant(1).photograph))
+
+
 def test_videos_that_are_damaged(tmp_path):
     rig(tmp_path)
     whole_video = (tmp_path / "cam_1.mp4").read_bytes()

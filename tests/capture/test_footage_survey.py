@@ -96,3 +96,14 @@ def test_cameras_come_before_all_else(tmp_path, run):
     code, out, err = run("inspect", film(tmp_path, [0, 0, 0]), "--clip", "0:4")
     assert code == 0 and "would run, with cameras\n" in out, out + err
     assert f"next       eigenfield calibrate {tmp_path} --clip 0:4" in out and "encode /" not in out
+
+
+def test_inspect_counts_damaged_pictures(tmp_path, run):
+    film(tmp_path, [0, 0, 0])
+    files = {c: [(f"cam_{c}.png", None)] for c in range(3)}
+    calibration(tmp_path / CALIBRATION_FILE, files, w=SIDE, h=SIDE)
+    for number, left in ((3, 0), (7, 60)):
+        file = tmp_path / "cam_1" / f"{number:03d}.png"
+        file.write_bytes(file.read_bytes()[:left])
+    code, out, err = run("inspect", tmp_path, "--clip", "3:")  # the first frame is damaged, too
+    assert code == 0 and "cam_1 (2)" in out and "problems   none" in out, out + err

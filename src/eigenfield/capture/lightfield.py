@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -127,9 +128,13 @@ class LightField(StillCapture):
     @property
     def as_stored(self) -> tuple[int, ...]:
         """Views whose photograph's EXIF orientation is not applied, although its size would be the same."""
-        stored = [i for i, view in enumerate(self.views) if not view.upright and view.picture is None]  # no frames
-        headers = {index: read_header(self.views[index].path) for index in stored}
-        return tuple(i for i, h in headers.items() if h.orientation != 1 and h.upright_size == h.stored_size)
+        found = []
+        for index, view in enumerate(self.views):
+            with suppress(CaptureError):  # of a film, or damaged and masked out
+                header = None if view.upright else read_header(view.path)
+                if header is not None and header.orientation != 1 and header.upright_size == header.stored_size:
+                    found.append(index)
+        return tuple(found)
 
     @property
     def metres_per_unit(self) -> float | None:

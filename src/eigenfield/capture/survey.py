@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -109,14 +110,16 @@ def find_focus(cameras: Sequence[Camera]) -> NDArray[np.float64] | None:
 
 
 def file_kinds(capture: Capture) -> list[tuple[str, int, bool, int]]:
-    """(format, bits a channel, alpha, number of photographs), the most frequent first."""
+    """(format, bits a channel, alpha, number of photographs), the most frequent first; without those whose header is
+    damaged."""
     kinds: Counter[tuple[str, int, bool]] = Counter()
     for source in capture.sources:
         if source.path.name.lower().endswith(VIDEO_EXTENSIONS):
             kinds["video", 8, False] += 1  # as they are decoded
             continue
-        header = read_header(source.path)
-        kinds[header.format, header.depth, header.alpha] += 1
+        with suppress(CaptureError):
+            header = read_header(source.path)
+            kinds[header.format, header.depth, header.alpha] += 1
     return [(*kind, count) for kind, count in sorted(kinds.items(), key=lambda item: (-item[1], item[0]))]
 
 

@@ -5,7 +5,9 @@ No frame becomes a file: a video is read by a decoder that stays open between fr
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 from typing import Protocol, TypeVar
 
@@ -18,6 +20,11 @@ from eigenfield.capture.lightfield import View
 from eigenfield.capture.photographs.decoded import size_on_disk
 from eigenfield.capture.photographs.read import decode
 from eigenfield.capture.photoset import Shot
+from eigenfield.core.errors import CaptureError
+
+PICTURE_DAMAGE = "image-unreadable", "image-truncated", "image-kind"  # codes of errors that cost one frame
+
+log = logging.getLogger(__name__)
 
 S = TypeVar("S", View, Shot)
 
@@ -74,32 +81,62 @@ class PictureTrack:
         return sum(map(size_on_disk, self.files))
 
     def at(self, source: S, index: int, held: bool) -> S:
-        file = self.files[index]
-        picture = _Held(file, source.upright, source.exposure) if held else None
         mask = self.masks[index] if self.masks and not held else source.mask
-        return replace(source, name=self.name, path=file, mask=mask, picture=picture)
+        picture = _PictureFrame(self, index, held, source.upright, source.exposure)
+        return replace(source, name=self.name, path=self.files[index], mask=mask, picture=picture)
 
-    def small(self, index: int, side: int) -> NDArray[np.float32]:
-        pixels, _ = decode(self.files[index])
+    def small(self, index: int, side: int) -> NDArray[np.float32] | None:
+        found = self.decode(index)
+        if found is None:
+            return None
+        pixels, _ = found
         scale = min(1.0, side / max(pixels.shape[:2]))
         width, height = (max(1, round(length * scale)) for length in pixels.shape[1::-1])
         return np.asarray(cv2.resize(pixels, (width, height), interpolation=cv2.INTER_AREA).mean(axis=-1), np.float32)
 
+    def decode(
+        self, index: int, upright: bool = True, exposure: float | None = None
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32] | None] | None:
+        """(H, W, 3) pixels and (H, W) alpha of a frame; None where it is damaged, which is told once."""
+        try:
+            return decode(self.files[index], upright, exposure)
+        except CaptureError as error:
+            if error.code not in PICTURE_DAMAGE:
+                raise
+            _tell_damage(str(error))
+            return None
+
+
+@cache
+def _tell_damage(text: str) -> None:
+    """Once, though each pass over the frames finds it."""
+    log.warning("%s; until then it is masked out", text)
+
 
 @dataclass(frozen=True)
-class _Held:
-    """A picture that stands in for a missing one."""
+class _PictureFrame:
+    """A picture; where it is damaged, masked out, the nearest sound one before it, or else after it.
 
-    path: Path
+    Attributes:
+        held: It stands in for a missing one.
+    """
+
+    track: PictureTrack
+    index: int
+    held: bool
     upright: bool
     exposure: float | None
 
     def decode(self) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
-        pixels, _ = decode(self.path, self.upright, self.exposure)
-        return pixels, _hidden(pixels)
+        for number in (*range(self.index, -1, -1), *range(self.index + 1, len(self.track.files))):
+            found = self.track.decode(number, self.upright, self.exposure)
+            if found is not None:
+                pixels, alpha = found
+                return pixels, alpha if number == self.index and not self.held else _hidden(pixels)
+        return decode(self.track.files[self.index], self.upright, self.exposure)  # all are damaged: raises why
 
     def identity(self) -> list[int]:
-        return [-1]
+        return [-1] if self.held else []
 
 
 def _hidden(pixels: NDArray[np.float32]) -> NDArray[np.float32]:

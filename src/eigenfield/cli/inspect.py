@@ -112,6 +112,9 @@ def command(
         pairs = measure_neighbours(opened, sound, progress)
         harms = find_harmful(opened, looks, progress)
         filmed = None if footage is None else describe_footage(footage, progress)
+    if footage is not None:  # frames that are held or damaged are counted there, and masked out
+        masks = {str(one.mask) for one in opened.sources}
+        damaged = [error for error in damaged if error.code != "mask-black" or error.path in masks]
     refusal = _refusal(capture, place, opened, damaged, proxy)
     report = describe(opened, damaged, 3 if footage is None else 2)
     if not place.also and capture.exists() and not _lies_in(opened.root, capture):  # unpacked into another folder
