@@ -378,6 +378,31 @@ def test_options_of_footage_alone(tmp_path):
         opened(tmp_path, rate=0)
 
 
+# clocks
+
+
+@pytest.mark.parametrize("seconds", [15, 600])
+def test_a_time_lapse(tmp_path, seconds):
+    footage = opened(timed(tmp_path, rate=1 / seconds))
+    assert footage.timeline.rate == Fraction(1, seconds) and all_seen(footage) == whole(3, range(5))
+    assert not footage.held.any()
+
+
+def test_rates_that_no_clip_has(tmp_path):
+    footage_refused("rate-unknown", folder_a_camera(tmp_path / "pictures"), rate=0.0004)
+    footage_refused("rate-unknown", tmp_path / "pictures", clip="::99999999")
+    for number, rate in enumerate((1 / 1800, 1e5, 1e308, 1e-307)):
+        footage_refused("rate-unknown", timed(tmp_path / f"{number}", rate=rate))
+
+
+@pytest.mark.parametrize("apart", [33333331, 10**40])
+def test_names_that_are_time_stamps(tmp_path, apart):
+    for camera in range(3):
+        for frame in range(3):
+            picture(tmp_path / f"cam_{camera}" / f"{1699999999123456789 + apart * frame + camera}.png", camera, frame)
+    assert "number pictures" in str(footage_refused("clip-range", tmp_path))
+
+
 # gaps
 
 

@@ -313,3 +313,7 @@ def test_sheets_are_refused():
 @pytest.mark.parametrize(("text", "frames"), [("1s", 30), ("0.5s", 15), ("12", 12), (" 2s ", 60), ("0.04s", 1)])
 def test_the_length_of_a_group(text, frames):
     assert group_length(text, Fraction(30)) == frames
+
+
+def test_a_time_lapse_has_a_group_for_each_frame():
+    assert [group_length(None, Fraction(rate)) for rate in ("1/600", "1/2", "24", "2000")] == [1, 1, 24, 1024]

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from eigenfield.core.errors import CaptureError
 
 CLOCK_NEAREST = 0.75  # of a frame: a camera without a frame nearer than this has a hole there
+CLOCK_FARTHEST = 2.0**62  # frames: what lies farther away is no clip, and could not be counted
 CLOCK_MAX_HOLE = 3  # frames that are missing one after the other, over which the frame before is held
 
 
@@ -37,7 +38,7 @@ def extent_of(name: str, times: NDArray[np.float64], offset: int) -> Extent:
         times: (n,) of its frames, ascending, in frames of the clock.
         offset: Frames of the camera that come before the clock's beginning.
     """
-    first, last = np.rint(times[[0, -1]]).astype(int) - offset
+    first, last = np.rint(times[[0, -1]].clip(-CLOCK_FARTHEST, CLOCK_FARTHEST)).astype(np.int64) - offset
     return Extent(name, int(first), int(last) + 1)
 
 

@@ -25,6 +25,7 @@ RATE_TOLERANCE = 0.003  # by which rates may differ that are the same
 RATE_END = 0.4  # frames by which the last one may be off
 RATE_ROUNDING = 0.02  # likewise, where times are rounded to milliseconds
 RATE_MAX_DENOMINATOR = 1001
+RATE_EXTREME = 1e9  # beyond this, and below its reciprocal, no rate is told from another: a clip has none of them
 FILM_MAX_SKIP = 16  # frames that are decoded and thrown away before a decoder is opened anew at a key frame
 
 log = logging.getLogger(__name__)
@@ -160,8 +161,11 @@ def open_film(path: Path) -> Film:
 
 def as_rate(rate: float, tolerance: float = RATE_TOLERANCE) -> Fraction:
     """Frames a second as a fraction: one that cameras have, where it differs by no more than a tolerance."""
+    rate = min(max(rate, 1 / RATE_EXTREME), RATE_EXTREME)
     usual = min(RATE_USUAL, key=lambda one: abs(one / rate - 1))
     fraction = usual if abs(usual / rate - 1) <= tolerance else Fraction(rate)
+    if fraction < 1:  # of a time lapse the seconds between frames are a short number
+        return 1 / (1 / fraction).limit_denominator(RATE_MAX_DENOMINATOR)
     return fraction.limit_denominator(RATE_MAX_DENOMINATOR)
 
 

@@ -140,7 +140,7 @@ def _of_numbers(frames: dict[str, dict[int, Path]], rate: float | None, lines: l
     tracks = []
     for name in sorted(frames, key=natural_key):
         order = sorted(frames[name])
-        times = (np.array(order, np.float64) - numbers[0]) / step
+        times = np.array([(number - numbers[0]) // step for number in order], np.float64)
         tracks.append(PictureTrack(name, tuple(frames[name][number] for number in order), times))
     return Found(tuple(tracks), RATE_DEFAULT if rate is None else as_rate(rate), tuple(lines))
 

@@ -11,6 +11,7 @@ import shutil
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path, PurePosixPath
 
 import numpy as np
@@ -29,6 +30,7 @@ from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS
 from eigenfield.capture.photoset import Capture
 from eigenfield.capture.sources import NAME_FORMATS, StrPath, find_claim, find_source, finish, masks_folder, open_source
 from eigenfield.capture.tracks import PictureTrack, Track, VideoTrack
+from eigenfield.coding.limits import MAX_FRAMES, MAX_RATE
 from eigenfield.core.camera_names import name_key
 from eigenfield.core.clip import Timeline
 from eigenfield.core.errors import CaptureError, OptionError
@@ -64,7 +66,8 @@ def open_footage(
         CaptureError: There is no footage (`footage-missing`), its cameras move (`footage-moving`) or have no frame in
             common (`footage-range`), one lacks frames in the middle (`footage-hole`); too few cameras (`too-few`); and
             those of `open_any`.
-        OptionError: `clip-unknown`, `clip-range`, `offset-unknown`; an option is impossible or would have no effect.
+        OptionError: `clip-unknown`, `clip-range`, `offset-unknown`, `rate-unknown`; an option is impossible or would
+            have no effect.
     """
     options = options or OpenOptions()
     asked = parse_clip(clip if clip is not None else options.clip or ":")
@@ -263,16 +266,29 @@ def _too_few(
 def _on_clock(
     root: Path, found: Found, still: Capture, tracks: tuple[Track, ...], asked: ClipRange, offsets: Mapping[str, int]
 ) -> Footage:
+    rate = found.rate / asked.step
+    if not Fraction(1, MAX_RATE) <= rate <= MAX_RATE:
+        raise OptionError(
+            "rate-unknown",
+            f"a clip has 1/{MAX_RATE} to {MAX_RATE} frames a second, and not {float(rate):.3g}",
+            remedy="say another --rate or a smaller step in --clip; where a calibration states times, they are seconds",
+        )
     shifts = offsets_by_camera(offsets, [track.name for track in tracks])
     extents = [extent_of(track.name, track.times, shift) for track, shift in zip(tracks, shifts, strict=True)]
     first, last = _range(asked, extents, found, root)
+    if (last - first) // asked.step > MAX_FRAMES:
+        raise OptionError(
+            "clip-range",
+            f"frames {first} to {last} are more than the {MAX_FRAMES} of a clip",
+            remedy="number pictures 0, 1, 2 if their names are time stamps, or name fewer frames with --clip",
+        )
     wanted = np.arange(first, last, asked.step)
     placed = [place_on_clock(track.times, shift, wanted) for track, shift in zip(tracks, shifts, strict=True)]
     missing = []
     for extent, track, (_, held) in zip(extents, tracks, placed, strict=True):
         if count := refuse_long_holes(extent, wanted, held, track.path):
             missing.append(f"{extent.name} ({count})")
-    timeline = Timeline(found.rate / asked.step, len(wanted), float(first / found.rate))
+    timeline = Timeline(rate, len(wanted), float(first / found.rate))
     problems = [*still.problems, *_describe_range(asked, extents, first, last)]
     if missing:
         problems.append(f"frames are missing in {list_names(missing)}: the frame before is held, and masked out")

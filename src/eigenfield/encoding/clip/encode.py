@@ -95,7 +95,7 @@ def encode_clip(
     surface = surface_of_clip(asked, given or SurfaceOptions(), has_proxy=proxy is not None)
     _refuse_proxy(footage, proxy, asked)
     audio = None if sound is None else Audio(read_opus(sound))
-    length = group_length(asked.group or DEFAULT_GROUP, footage.timeline.rate)
+    length = group_length(asked.group, footage.timeline.rate)
     if work is not None:
         make_folder(work)
     if surface is not None:
@@ -213,8 +213,11 @@ def _spans(first: int, end: int, length: int) -> tuple[tuple[int, int], ...]:
     return tuple((first + start, first + stop) for start, stop in even_pieces(count, -(-count // length)))
 
 
-def group_length(text: str, rate: Fraction) -> int:
-    """Frames of a group, from seconds (1.5s) or frames (30). OptionError `group-unknown`."""
+def group_length(text: str | None, rate: Fraction) -> int:
+    """Frames of a group, from seconds (1.5s) or frames (30); None: of a second, or of one frame where that is longer.
+    OptionError `group-unknown`."""
+    if text is None:
+        return max(GROUP_LIMITS[0], min(round(rate), GROUP_LIMITS[1]))
     match = GROUP_PATTERN.fullmatch(text.strip())
     if match is not None:
         frames = int(match[1]) if match[1] else round(float(match[2]) * rate)
