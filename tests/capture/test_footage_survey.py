@@ -16,13 +16,14 @@ from support.filmed import CALIBRATION_FILE, calibration, opened
 FRAMES, SIDE = 48, 48
 
 
-def film(root: Path, delays: list[int], *, move: bool = True, light: np.ndarray | None = None) -> Path:
+def film(root: Path, delays: list[int], *, move: bool = True, light: np.ndarray | None = None,
+         frames: int = FRAMES) -> Path:  # fmt: skip
     """A square that jumps at random moments, seen by cameras that are late by some frames, with noise of 1 level."""
     random = np.random.default_rng(1)
-    place = np.cumsum(random.integers(0, 6, FRAMES + 20) * (random.random(FRAMES + 20) < 0.5)) % (SIDE - 12)
+    place = np.cumsum(random.integers(0, 6, frames + 20) * (random.random(frames + 20) < 0.5)) % (SIDE - 12)
     ground = random.integers(60, 180, (SIDE, SIDE, 3))
     for camera, delay in enumerate(delays):
-        for frame in range(FRAMES):
+        for frame in range(frames):
             pixels = np.roll(ground, 3 * camera, axis=1).astype(float)
             at = int(place[frame + 10 - delay]) if move else 5
             pixels[18 : 18 + 10, at : at + 12] = 240
@@ -90,6 +91,21 @@ def test_inspect(tmp_path, run, words):
     assert all(" --clip" in command for command in report["next"])
     said = "--clip 0:40 --offset cam_1=1" if "--offset" in words else "--clip :"
     assert report["next"] == [f"eigenfield encode {tmp_path} {said} -o clip.glb"]
+
+
+def test_inspect_says_offsets_in_frames_of_the_clock_and_names_as_words(tmp_path, run):
+    names = ("left cam", "b", "c")
+    film(tmp_path, [4, 0, 0], frames=72)
+    for camera, name in enumerate(names):
+        (tmp_path / f"cam_{camera}").rename(tmp_path / name)
+    calibration(tmp_path / CALIBRATION_FILE, {c: [(f"{n}.png", None)] for c, n in enumerate(names)}, w=SIDE, h=SIDE)
+    for words in ((), ("--offset", "left cam.png=2")):
+        code, out, err = run("inspect", tmp_path, "--clip", ":", *words)
+        assert code == 0 and "try --offset 'left cam=4'\n" in out, out + err
+    code, out, err = run("inspect", tmp_path, "--clip", "::2")
+    assert code == 0 and "try --offset 'left cam=4'\n" in out, out + err
+    code, out, err = run("inspect", tmp_path, "--clip", "::2", "--json")
+    assert [camera["offset"] for camera in json.loads(out)["footage"]["cameras"]] == [0, 0, 4], err
 
 
 def test_cameras_come_before_all_else(tmp_path, run):

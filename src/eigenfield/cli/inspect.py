@@ -87,7 +87,7 @@ def command(
     from eigenfield.calibration import measure_neighbours
     from eigenfield.calibration.harm import find_harmful, look_at
     from eigenfield.capture import Footage, open_path
-    from eigenfield.capture.clip_range import parse_offsets
+    from eigenfield.capture.clip_range import parse_clip, parse_offsets
     from eigenfield.capture.survey import decode_all
     from eigenfield.cli.inspect_footage import describe_footage
 
@@ -111,7 +111,7 @@ def command(
         sound = [i for i, one in enumerate(opened.sources) if not broken & {str(one.path), str(one.mask)}]
         pairs = measure_neighbours(opened, sound, progress)
         harms = find_harmful(opened, looks, progress)
-        filmed = None if footage is None else describe_footage(footage, progress)
+        filmed = None if footage is None else describe_footage(footage, parse_clip(place.clip or ":").step, progress)
     if footage is not None:  # frames that are held or damaged are counted there, and masked out
         masks = {str(one.mask) for one in opened.sources}
         damaged = [error for error in damaged if error.code != "mask-black" or error.path in masks]

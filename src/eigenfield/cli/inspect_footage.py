@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+import shlex
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
-
-from eigenfield.core.errors import one_line
 
 if TYPE_CHECKING:
     from eigenfield.capture import Footage
@@ -16,8 +15,12 @@ SURFACE_MIN_CAMERAS = 3  # from which a surface is estimated
 STILL_LEAST, STILL_MOST = 0.1, 0.995  # shares of pixels
 
 
-def describe_footage(footage: Footage, progress: Progress | None) -> dict[str, Any]:
-    """The key `footage` of the report; `docs/capture-formats.md` says what is in it."""
+def describe_footage(footage: Footage, step: int, progress: Progress | None) -> dict[str, Any]:
+    """The key `footage` of the report; `docs/capture-formats.md` says what is in it.
+
+    Args:
+        step: Frames of its clock from each instant to the next.
+    """
     from eigenfield.capture.footage_survey import find_lags, watch
 
     watched = watch(footage, progress)
@@ -36,7 +39,7 @@ def describe_footage(footage: Footage, progress: Progress | None) -> dict[str, A
                 "frames": len(track.times),
                 "held": int(held.sum()),
                 "damaged": one.damaged,
-                "offset": lag.frames if lag.known else None,
+                "offset": lag.frames * step if lag.known else None,
                 "correlation": lag.correlation,
                 "stops": one.stops,
                 "still": one.still,
@@ -50,7 +53,7 @@ def footage_lines(footage: dict[str, Any], offsets: Mapping[str, int]) -> list[s
     """Lines for people about the key `footage`.
 
     Args:
-        offsets: That are taken already.
+        offsets: That are taken already, by names that people give cameras.
     """
     cameras, rate = footage["cameras"], footage["rate"][0] / footage["rate"][1]
     lines = [
@@ -76,13 +79,20 @@ def footage_lines(footage: dict[str, Any], offsets: Mapping[str, int]) -> list[s
 
 
 def _step_lines(cameras: list[dict[str, Any]], offsets: Mapping[str, int]) -> list[str]:
+    from eigenfield.capture.clip_range import offsets_by_camera
+
     known = [camera for camera in cameras if camera["offset"] is not None]
-    late = {camera["name"]: camera["offset"] for camera in known if camera["offset"]}
+    given = offsets_by_camera(offsets, [camera["name"] for camera in cameras])
+    late = {
+        camera["name"]: camera["offset"] + taken
+        for camera, taken in zip(cameras, given, strict=True)
+        if camera["offset"]
+    }
     if not known:
         return ["  in step    not told: too little moves, or for too short a time"]
     if not late:
         return [f"  in step    {len(known)} of {len(cameras)} cameras, as far as the scene's motion tells"]
-    words = " ".join(f"--offset {one_line(name)}={frames + offsets.get(name, 0)}" for name, frames in late.items())
+    words = " ".join(f"--offset {shlex.quote(f'{name}={frames}')}" for name, frames in late.items())
     return [f"  in step    {len(late)} of {len(cameras)} cameras seem not to be: try {words}"]
 
 
