@@ -213,6 +213,13 @@ def test_videos_of_another_length_and_rate(tmp_path):
     assert [frame_of(instant.photograph(c), truth[c]) for c in range(3)] == [4, 8, 4]
 
 
+def test_a_rate_that_no_video_has(tmp_path):
+    rig(tmp_path, (12, 24, 12), (10, 20, 10))
+    assert "20" in str(footage_refused("rate-unknown", tmp_path, rate=21.0))
+    assert opened(tmp_path, rate=20).timeline.rate == 20
+    assert opened(tmp_path, rate=5).timeline.rate == 5
+
+
 def test_a_camera_that_stops_is_masked_out(tmp_path):
     truth = rig(tmp_path, (12, 12, 5))
     footage = opened(tmp_path, ":12")

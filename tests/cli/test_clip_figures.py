@@ -86,4 +86,6 @@ def test_a_file_is_measured_against_a_folder(run, tmp_path):
     assert again.code != 0 and "exists already" in again.err
     assert "--curve" in run(*given, "--curve").err
     few = run(*given, "--every", "3", "-q")
+    none = run(*given, "--every", "0", "-q")
+    assert none.code == 2 and "each 0 frames" in none.err
     assert "4 of 4 frames" in few.out  # 0 and 3, and both sides of the border

@@ -149,6 +149,9 @@ def test_what_does_not_fit_is_refused(clip, tmp_path):
     with pytest.raises(OptionError) as error:
         evaluate_clip(clip, Instants(Timeline(clip.timeline.rate, 3), footage.captures[:3]))
     assert error.value.code == "time"
+    with pytest.raises(OptionError, match="--rate") as error:
+        evaluate_clip(clip, Instants(Timeline(clip.timeline.rate * 5 / 4, 7), footage.captures + footage.captures[:2]))
+    assert error.value.code == "time"
     other = tiny_clip((5,), cameras=9, size=48)
     names = tuple(f"other_{name}" for name in other.rig.names)
     with pytest.raises(CaptureError) as error:

@@ -21,7 +21,7 @@ from eigenfield.capture.messages import Note, count_phrase, list_names, natural_
 from eigenfield.capture.pairing import find_own_mask
 from eigenfield.capture.readers.video import videos_of
 from eigenfield.capture.tracks import PictureTrack, Track, VideoTrack
-from eigenfield.core.errors import CaptureError, one_line
+from eigenfield.core.errors import CaptureError, OptionError, one_line
 from eigenfield.core.open_options import RATE_MAX
 from eigenfield.runtime.parallel import parallel_map
 
@@ -53,6 +53,8 @@ def find_footage(root: Path, rate: float | None) -> Found | None:
 
     Args:
         rate: Frames a second of pictures; None for the default, and for what videos state.
+
+    Raises OptionError `rate-unknown`: no video has so many frames.
     """
     videos = videos_of(root)
     if len(videos) >= FORM_MIN_CAMERAS:
@@ -69,6 +71,12 @@ def _of_videos(videos: Sequence[Path], rate: float | None) -> Found:
     times = Counter(path.stem for path in videos)
     names = [one_line(path.stem if times[path.stem] == 1 else path.name) for path in videos]
     rates = [film.rate for film in films]
+    if rate is not None and rate / max(rates) - 1 > RATE_TOLERANCE:
+        raise OptionError(
+            "rate-unknown",
+            f"--rate {rate:g} is more than the {float(max(rates)):.4g} frames a second of the fastest video",
+            remedy="leave it out, or say no more than that",
+        )
     slowest = [one for one in rates if one / min(rates) - 1 <= RATE_TOLERANCE]
     clock = Counter(slowest).most_common(1)[0][0] if rate is None else as_rate(rate)
     problems = []

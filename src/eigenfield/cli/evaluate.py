@@ -138,7 +138,8 @@ def command(
         stills = {"curve": settings.pop("curve") != "none", "store": store, "exclude-circles": exclude_circles,
                   "workers": workers, "cluster": cluster, "png-maps": settings.pop("png_maps") != "all"}  # fmt: skip
         refuse_for_clips(stills)
-        evaluate_clip_file(loaded, scene, capture, place, plots, overwrite, as_json, quiet, every or 1, settings)
+        every = 1 if every is None else every
+        evaluate_clip_file(loaded, scene, capture, place, plots, overwrite, as_json, quiet, every, settings)
         return
     if every is not None:
         raise OptionError("clip-option", "--every is for clips", remedy="leave it out")

@@ -29,6 +29,7 @@ from eigenfield.rendering import Renderer
 from eigenfield.runtime.parallel import parallel_map
 
 CLIP_EVALUATION_SCHEMA = "eigenfield.evaluate-clip/1"
+CLOCK_TOLERANCE = 0.1  # frames by which times of clip and footage may differ, by rounding
 FIFTH_PERCENT = 5  # of pictures that are worse than `fifth`
 
 Row = tuple[int, str, ImageScores]  # frame, name of the camera, its scores
@@ -130,7 +131,8 @@ def evaluate_clip(
     Raises:
         CaptureError: `no-photographs`: no photograph has the name of a camera. `photograph-size`. As for reading
             footage.
-        OptionError: `every`, `textures` or `settings-unknown`; `time`, the footage ends before the clip.
+        OptionError: `every`, `textures` or `settings-unknown`; `time`, the footage ends before the clip, or has its
+            frames at other times.
     """
     started = time.monotonic()
     if not isinstance(clip, Clip):
@@ -274,6 +276,14 @@ def open_clip_session(
     scene = clip.scene(moment)
     views = match_photographs(scene, with_scene_cameras(scene, footage.instant(footage.timeline.frame_at(moment))))
     footage.timeline.frame_at(float(clip.timeline.times[-1]))
+    numbers = (clip.timeline.times - footage.timeline.first) * float(footage.timeline.rate)
+    if np.abs(numbers - np.rint(numbers)).max() > CLOCK_TOLERANCE:
+        raise OptionError(
+            "time",
+            f"frames of the clip, {float(clip.timeline.rate):.4g} a second, lie between those of the footage, "
+            f"{float(footage.timeline.rate):.4g} a second",
+            remedy="give the --rate and the --clip with which the clip was encoded",
+        )
     most = scene.appearance.textures
     count = most if textures is None else textures
     if not 0 <= count <= most:
