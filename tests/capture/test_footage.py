@@ -149,6 +149,45 @@ def test_folders_beside_the_cameras_are_none(tmp_path):
     assert opened(tmp_path).names == ("cam_0", "cam_1", "cam_2")
 
 
+def test_cameras_whose_clocks_are_a_little_apart(tmp_path):
+    folder_a_camera(tmp_path, frames=12)
+    files = {c: [(f"cam_{c}/{f:06d}.png", f / 25 + 0.002 * c) for f in range(12)] for c in range(3)}
+    calibration(tmp_path / CALIBRATION_FILE, files)
+    footage = opened(tmp_path)
+    assert footage.timeline.rate == 25 and all_seen(footage) == whole(3, range(12))
+
+
+@pytest.mark.parametrize("noise", [-1e-12, 1e-8])
+def test_poses_that_differ_by_rounding_are_of_one_camera(tmp_path, noise):
+    timed(tmp_path, frames=6)
+    document = json.loads((tmp_path / CALIBRATION_FILE).read_text("utf-8"))
+    for number, entry in enumerate(document["frames"]):
+        for row in range(3):  # the middle camera's place is half of their extent
+            entry["transform_matrix"][row][3] += noise * (number % 2)
+    (tmp_path / CALIBRATION_FILE).write_text(json.dumps(document), encoding="utf-8")
+    footage = opened(tmp_path)
+    assert footage.names == ("cam_0", "cam_1", "cam_2") and all_seen(footage) == whole(3, range(6))
+
+
+@pytest.mark.parametrize("inner", ["", "images/"])
+def test_frames_that_are_called_as_other_cameras(tmp_path, inner):
+    for camera in range(4):
+        for frame in range(4):
+            picture(tmp_path / f"{camera}" / f"{inner}{frame}.png", camera, frame)
+    for frames in ((0, 0, 0, 0), (0, 2, 1, 3)):
+        files = {camera: [(f"{camera}/{inner}{frame}.png", None)] for camera, frame in enumerate(frames)}
+        calibration(tmp_path / CALIBRATION_FILE, files)
+        footage = opened(tmp_path)
+        assert footage.names == ("0", "1", "2", "3") and all_seen(footage) == whole(4, range(4))
+        assert [camera.centre[0] for camera in footage.cameras] == [pytest.approx(0.1 * c) for c in range(4)]
+
+
+def test_a_calibration_that_is_none(tmp_path):
+    (tmp_path / "empty").mkdir()
+    error = footage_refused("calibration-missing", folder_a_camera(tmp_path / "take"), calibration=tmp_path / "empty")
+    assert "empty" in str(error)
+
+
 # videos
 
 

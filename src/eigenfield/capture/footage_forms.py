@@ -13,6 +13,7 @@ from fractions import Fraction
 from pathlib import Path, PurePosixPath
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eigenfield.capture.calibration import Calibration, Entry
 from eigenfield.capture.film import RATE_DEFAULT, RATE_TOLERANCE, as_rate, open_film
@@ -26,6 +27,7 @@ from eigenfield.core.open_options import RATE_MAX
 from eigenfield.runtime.parallel import parallel_map
 
 FORM_MIN_CAMERAS = 2
+POSE_ROUNDING = 1e-6  # of the cameras' extent, and of entries of a rotation: poses that are nearer are one
 CAMERA_WORDS = ("cam", "camera", "view", "cameras", "kamera", "c", "v")
 INSTANT_WORDS = ("frame", "time", "instant", "frames", "t", "f")
 OTHER_FOLDERS = re.compile(r"images(_\d+)?|(masks?|depths?|sparse|labels?|normals?)(_.*)?", re.IGNORECASE)
@@ -192,15 +194,25 @@ def is_timed(read: Calibration) -> bool:
 
 def one_camera_each(read: Calibration) -> tuple[Calibration, list[list[Entry]]]:
     """A calibration in which entries of one pose and lens are one camera, whose file is the camera's name; and the
-    entries of each."""
+    entries of each. Poses that differ by rounding alone are one."""
     groups: dict[tuple[object, ...], list[Entry]] = defaultdict(list)
-    for entry in read.entries:
-        pose = np.round(np.concatenate([entry.R.ravel(), entry.centre]), 9).tobytes()
-        groups[pose, entry.intrinsics, str(entry.lens)].append(entry)
+    centres = np.array([entry.centre for entry in read.entries])
+    extent = float(np.ptp(centres, axis=0).max()) or 1.0
+    poses = np.hstack([np.array([entry.R.ravel() for entry in read.entries]), centres / extent])
+    for entry, pose in zip(read.entries, np.apply_along_axis(_levels, 0, poses), strict=True):
+        groups[pose.tobytes(), entry.intrinsics, str(entry.lens)].append(entry)
     known = list(groups.values())
     names = _names_of_groups(known)
     entries = [replace(group[0], file=name, label=name, mask=None) for group, name in zip(known, names, strict=True)]
     return replace(read, entries=tuple(entries)), known
+
+
+def _levels(values: NDArray[np.float64]) -> NDArray[np.int64]:
+    """(n,) the same number for values that lie near each other: no limit as of rounding runs between them."""
+    order = np.argsort(values)
+    levels = np.zeros(len(values), np.int64)
+    levels[order[1:]] = np.cumsum(np.diff(values[order]) > POSE_ROUNDING)
+    return levels
 
 
 def _names_of_groups(groups: Sequence[Sequence[Entry]]) -> list[str]:
@@ -226,7 +238,9 @@ def of_entries(read: Calibration, root: Path, *, apart: bool, rate: float | None
         apart: As of `pair_photographs`.
     """
     single, groups = one_camera_each(read)
-    if max(map(len, groups)) < 2:
+    times = [sorted({entry.time for entry in group if entry.time is not None}) for group in groups]
+    steps = np.concatenate([np.diff(own) for own in times])  # cameras may be a little apart
+    if not len(steps):
         raise CaptureError(
             "footage-moving",
             "states a time for each photograph, but no camera stands still: each has a pose of its own",
@@ -234,8 +248,8 @@ def of_entries(read: Calibration, root: Path, *, apart: bool, rate: float | None
             remedy="leave out --clip, or give the poses of cameras that stand still",
         )
     stated = rate if rate is not None else read.rate
-    times = sorted({entry.time for entry in read.entries if entry.time is not None})
-    clock = as_rate(1 / float(np.median(np.diff(times))) if stated is None or not 0 < stated <= RATE_MAX else stated)
+    first = min(min(own) for own in times if own)
+    clock = as_rate(1 / float(np.median(steps)) if stated is None or not 0 < stated <= RATE_MAX else stated)
     finder = PhotographFinder(root, read.path if read.path.is_dir() else read.path.parent, apart)
     tracks, lost = [], []
     for entry, group in zip(single.entries, groups, strict=True):
@@ -243,7 +257,7 @@ def of_entries(read: Calibration, root: Path, *, apart: bool, rate: float | None
         lost += [one.file for one, path in placed if path is None]
         found = [(one, path) for one, path in placed if path is not None]
         if found:
-            at = np.round((np.array([one.time or 0.0 for one, _ in found]) - times[0]) * float(clock), 3)
+            at = np.round((np.array([one.time or 0.0 for one, _ in found]) - first) * float(clock), 3)
             masks = tuple(find_own_mask(one, finder, read.path) for one, _ in found)
             files = tuple(path for _, path in found)
             tracks.append(PictureTrack(entry.file, files, at, masks if any(masks) else ()))

@@ -24,11 +24,21 @@ from eigenfield.capture.clock import Extent, common_range, extent_of, place_on_c
 from eigenfield.capture.footage import Footage, at_frames
 from eigenfield.capture.footage_forms import Found, find_footage, is_timed, of_entries, one_camera_each
 from eigenfield.capture.formats import FORMATS, Claim, format_by_name
+from eigenfield.capture.locate import IMAGES_FOLDER
 from eigenfield.capture.messages import describe, list_names
 from eigenfield.capture.pairing import pair_photographs
 from eigenfield.capture.photographs.kinds import VIDEO_EXTENSIONS
 from eigenfield.capture.photoset import Capture
-from eigenfield.capture.sources import NAME_FORMATS, StrPath, find_claim, find_source, finish, masks_folder, open_source
+from eigenfield.capture.sources import (
+    NAME_FORMATS,
+    StrPath,
+    find_claim,
+    find_source,
+    finish,
+    masks_folder,
+    no_cameras,
+    open_source,
+)
 from eigenfield.capture.tracks import PictureTrack, Track, VideoTrack
 from eigenfield.coding.limits import MAX_FRAMES, MAX_RATE
 from eigenfield.core.camera_names import name_key
@@ -96,7 +106,10 @@ def _find_calibration(root: Path, options: OpenOptions) -> Claim | None:
         row = format_by_name(options.format)
         formats = (row,) if row.read_cameras is not None else ()
     if options.calibration is not None:
-        return find_claim(local_copy(options.calibration), formats or CAMERA_FORMATS, options)
+        claim = find_claim(local_copy(options.calibration), formats or CAMERA_FORMATS, options)
+        if claim is None:
+            raise no_cameras(Path(options.calibration))
+        return claim
     if root.is_file() and root.name.lower().endswith(VIDEO_EXTENSIONS):
         raise _too_few(root, "is the video of one camera", FOOTAGE_MIN_CAMERAS)
     return find_claim(root, formats, options) if formats else None
@@ -168,7 +181,7 @@ def _open_cameras(
             assert claim.format.read_cameras is not None
             read = found.calibration or read or claim.format.read_cameras(claim.found, folder)
             read = replace(read, problems=(*claim.problems, *read.problems))
-            opened = _by_calibration(read, folder, by_file, root, options)
+            opened = _by_calibration(read, folder, by_file, bool(found.instants), root, options)
         opened = finish(opened)
         tracks = tuple(by_file[source.path.name] for source in opened.sources)
     first = np.zeros(len(tracks), np.int64)
@@ -186,9 +199,9 @@ def _by_names(folder: Path, cameras: int, root: Path, options: OpenOptions) -> C
 
 
 def _by_calibration(
-    read: Calibration, folder: Path, by_file: Mapping[str, Track], root: Path, options: OpenOptions
+    read: Calibration, folder: Path, by_file: Mapping[str, Track], instants: bool, root: Path, options: OpenOptions
 ) -> Capture:
-    named = _by_stand_in(read, by_file)
+    named = _by_stand_in(read, by_file, instants)
     if len(named.entries) < FOOTAGE_MIN_CAMERAS and not read.errors:
         here = list_names([track.name for track in by_file.values()])
         there = list_names([entry.file for entry in read.entries])
@@ -230,10 +243,11 @@ def _stand_in(track: Track, folder: Path) -> Path:
     return file
 
 
-def _by_stand_in(read: Calibration, by_file: Mapping[str, Track]) -> Calibration:
+def _by_stand_in(read: Calibration, by_file: Mapping[str, Track], instants: bool) -> Calibration:
     """The entries of a calibration that are of the footage's cameras, with the names of their stand-ins.
 
-    They name a camera by their file or their folder, with or without the number of a frame.
+    They name a camera by their file or their folder, with or without the number of a frame. A frame may be called as
+    another camera is: folders come first, but where they are instants.
     """
     keys = {name_key(track.name): file for file, track in by_file.items()}
     entries: list[Entry] = []
@@ -242,7 +256,9 @@ def _by_stand_in(read: Calibration, by_file: Mapping[str, Track]) -> Calibration
     lost: list[str] = []
     for entry in read.entries:
         path = PurePosixPath(entry.file)
-        words = (entry.file, path.name, path.stem, path.parent.name, NUMBER_AT_END.sub("", path.stem))
+        folder = path.parent.parent.name if path.parent.name == IMAGES_FOLDER else path.parent.name
+        either = (path.name, path.stem, folder) if instants else (folder, path.name, path.stem)
+        words = (entry.file, *either, NUMBER_AT_END.sub("", path.stem))
         file = next((keys[key] for word in words if (key := name_key(word)) in keys), None)
         if file is None or file in taken:
             (lost if file is None else twice).append(entry.file)
