@@ -85,6 +85,14 @@ def test_it_is_measured_against_its_footage(clip, filmed, run):
     assert min(one["encoded"]["psnr"] for one in scores["over_time"]) > 29
 
 
+def test_texture_maps_of_a_clip_are_written(filmed, run, tmp_path):
+    mesh, output = filmed / "meshes" / "mesh_0000.ply", tmp_path / "maps.glb"
+    words = "--clip", "0:1", "--proxy", mesh, "--fit", "none", "--textures", 2, "--atlas", 64
+    result = run("encode", filmed / "footage", *words, "-o", output)
+    assert result.code == 0 and f"{output}: " in result.out, result.err
+    assert run("validate", output).code == 0 and json.loads(run("info", output, "--json").out)["clip"]["groups"] == [1]
+
+
 def test_sequences_that_cannot_be_used_are_refused_before_any_work(filmed, run, tmp_path):
     pattern, output = filmed / "meshes" / "mesh_%04d.ply", tmp_path / "a.glb"
     with pytest.raises(OptionError) as caught:

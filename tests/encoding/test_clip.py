@@ -26,6 +26,7 @@ from eigenfield.imaging.metrics import psnr, to_codes
 from eigenfield.rendering import Renderer, camera_weights, draw_texture
 from eigenfield.runtime.executor import open_executor
 from eigenfield.runtime.files import scratch_arrays
+from eigenfield.viewer.exports import write_clip_folder
 from support.captures import backdrop, shaded_texture
 from support.moving_clips import FootageInMemory
 from support.observations import CalibratedInMemory, InMemory
@@ -185,16 +186,22 @@ def test_frames_with_other_masks_are_other_footage(lit):
     assert footage_digest(seen) != footage_digest(replace(seen, frames=masked))
 
 
-def test_without_a_fit_all_frames_of_a_group_share_the_decomposition_of_their_texture_maps():
-    """The weights are the left singular vectors of all frames' maps beside each other, each less its frame's mean."""
+@pytest.fixture(scope="module")
+def projected():
+    """Two frames the paper's way."""
     seen = footage(1.0, 0.7)
-    clip = encode_footage(seen, MESH, EncodeOptions(fit="none", textures=3), group="2")
+    return seen, encode_footage(seen, MESH, EncodeOptions(fit="none", textures=3), group="2")
+
+
+def test_without_a_fit_all_frames_of_a_group_share_the_decomposition_of_their_texture_maps(projected):
+    """The weights are the left singular vectors of all frames' maps beside each other, each less its frame's mean."""
+    seen, clip = projected
     assert clip.settings["fit"] == "none"
     scenes = [clip.scene(float(time)) for time in clip.timeline.times]
     atlas = make_atlas(scenes[0].proxy.mesh, *clip.settings["atlas"])
     beside = []
     for instant in seen.frames:
-        with texture_maps(atlas, CAMERAS, instant) as maps:
+        with texture_maps(atlas, clip.rig.cameras, instant) as maps:
             mean = mean_map(maps)
             beside.append(((maps.values - mean.values) * maps.seen[..., None]).reshape(9, -1).astype(np.float64))
     vectors = np.linalg.svd(np.concatenate(beside, axis=1), full_matrices=False)[0][:, :3]
@@ -203,6 +210,28 @@ def test_without_a_fit_all_frames_of_a_group_share_the_decomposition_of_their_te
     for scene, instant in zip(scenes, seen.frames, strict=True):
         assert measured(scene, instant) > 36
     assert measured(scenes[0], seen.frames[1]) < 20
+
+
+def test_a_clip_without_a_fit_is_saved_on_the_mesh_and_the_cameras_of_its_maps(projected, tmp_path):
+    _, clip = projected
+    save(clip, tmp_path / "clip.glb")
+    assert validate(tmp_path / "clip.glb") == []
+    write_clip_folder(clip, tmp_path / "clip")
+    for loaded in map(load_clip, (tmp_path / "clip.glb", tmp_path / "clip")):
+        one, other = (found.scene(float(clip.timeline.times[1])) for found in (clip, loaded))
+        np.testing.assert_array_equal(one.proxy.mesh.vertices, other.proxy.mesh.vertices)
+        drawn = [Renderer(scene).draw(scene.rig.cameras[4], camera_weights(scene, 4)).image for scene in (one, other)]
+        np.testing.assert_array_equal(*drawn)
+
+
+def test_without_a_fit_groups_of_another_mesh_or_other_cameras_are_not_taken_up(tmp_path):
+    seen, options = footage(1.0), EncodeOptions(fit="none", textures=2, atlas=64)
+    near = replace(MESH, vertices=MESH.vertices + np.float32([0, 0, -0.3]))
+    aside = [replace(camera, t=camera.t + np.array([0.05, 0, 0])) for camera in CAMERAS]
+    moved = replace(seen, frames=[CalibratedInMemory(seen.frames[0].observations, aside)])
+    for film, mesh in ((seen, MESH), (seen, near), (moved, MESH), (seen, MESH)):
+        encode_footage(film, mesh, options, work=tmp_path)
+    assert len(list((tmp_path / "clip").iterdir())) == 3
 
 
 @pytest.mark.parametrize("count", [None, pytest.param(2, marks=pytest.mark.slow)])

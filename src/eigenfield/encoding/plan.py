@@ -57,7 +57,7 @@ class EncodePlan:
         prepared: The proxy that the same plan at another quality starts from.
         views: The cameras as the file keeps them, and which of them are encoded.
         proxy: The proxy as the file keeps it.
-        payloads: The coded mesh, opacity and cameras; empty without a fit.
+        payloads: The coded mesh, opacity and cameras; empty without a fit, unless it is of a clip.
         atlas: Width and height of its atlas.
     """
 

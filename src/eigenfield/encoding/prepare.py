@@ -188,12 +188,25 @@ def _at_its_quality(prepared: PreparedProxy, asked: EncodeOptions) -> EncodePlan
     relief = proxy.lattice is not None or proxy.sheets is not None
     options = _for_one_quality(asked) if relief else _for_surface(asked, views)
     atlas = _atlas_size(options, proxy.mesh, views.rig)
-    if options.fit == "none":
-        return EncodePlan(asked, options, prepared, views, Proxy(proxy.mesh), Payloads(), atlas)
-    made = _coded_proxy(prepared, views, options, atlas)
+    plan = EncodePlan(asked, options, prepared, views, Proxy(proxy.mesh), Payloads(), atlas)
+    return plan if options.fit == "none" else _with_coded(plan, _coded_proxy(prepared, views, options, atlas))
+
+
+def coded_plan(plan: EncodePlan) -> EncodePlan:
+    """The plan with mesh and cameras as they are coded. That of a fit has them so already."""
+    if plan.payloads:
+        return plan
+    rig = plan.views.rig
+    proxy = relief_proxy(plan.mesh, rig.cameras, DEPTH_ERROR_PX)
+    return _with_coded(plan, coded_mesh(proxy, rig.cameras, rig.reference))
+
+
+def _with_coded(plan: EncodePlan, made: Coded[Proxy]) -> EncodePlan:
+    """The plan with a coded proxy, and with its cameras coded."""
+    views = plan.views
     cameras = coded_cameras(views.rig.cameras, made.value.mesh, grid_of(views.coordinates))
-    views = views.with_cameras(cameras.value)
-    return EncodePlan(asked, options, prepared, views, made.value, made.payloads | cameras.payloads, atlas)
+    views, payloads = views.with_cameras(cameras.value), made.payloads | cameras.payloads
+    return replace(plan, views=views, proxy=made.value, payloads=payloads)
 
 
 def _atlas_size(options: EncodeOptions, mesh: Mesh, rig: Rig) -> tuple[int, int]:

@@ -32,7 +32,7 @@ from eigenfield.encoding.clip.target import reach_quality
 from eigenfield.encoding.fitted.colour import to_rgb
 from eigenfield.encoding.options import PRESETS, EncodeOptions, resolved_value
 from eigenfield.encoding.plan import EncodePlan
-from eigenfield.encoding.prepare import plan_encoding
+from eigenfield.encoding.prepare import coded_plan, plan_encoding
 from eigenfield.encoding.reach_target import REFIT_MAX_NEAR_QUALITIES
 from eigenfield.encoding.target import Target
 from eigenfield.gltf.clips import coded_clip
@@ -178,7 +178,8 @@ def _runs(
         middle = cast("CalibratedObservations", footage.instant(len(footage) // 2))
         spans = _spans(0, len(footage), length)
         if not isinstance(proxy, MovingProxy):
-            return [Run(spans, plan_encoding(middle, cast("Mesh", proxy), asked, work, progress))]
+            plan = plan_encoding(middle, cast("Mesh", proxy), asked, work, progress)
+            return [Run(spans, coded_plan(plan))]  # texture maps, too, are made on what decoders find
         settled = settle_backmost(middle, len(footage) // 2, proxy, asked, work, progress)
         plan = plan_encoding(middle, settled.proxy, asked, work, progress, exact=True)
         moving = moving_mesh(plan, settled.positions, opacity=settled.opacity)
