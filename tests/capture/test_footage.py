@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import pickle
 import shutil
 from fractions import Fraction
@@ -240,6 +241,24 @@ def test_no_frame_becomes_a_file(tmp_path):
     assert footage.instant(3).photograph(0).pixels.shape == (48, 64, 3)
     assert sorted(tmp_path.rglob("*")) == before
     assert footage.instant(3).views[0].path == tmp_path / "cam_0.mp4" and footage.bytes > 0
+
+
+@pytest.mark.parametrize("write", [rig, timed])
+def test_its_identity_is_what_its_files_hold_wherever_they_lie(tmp_path, write):
+    write(tmp_path / "one")
+    shutil.copytree(tmp_path / "one", tmp_path / "two")
+    one, two = (opened(tmp_path / name) for name in ("one", "two"))
+    assert one.identity() == two.identity() != one.part(1, 3).identity()
+    file = one.tracks[1].path
+    data, times = bytearray(file.read_bytes()), file.stat()
+    data[len(data) // 2] ^= 1
+    file.write_bytes(data)
+    os.utime(file, ns=(times.st_atime_ns, times.st_mtime_ns + 1))
+    assert one.identity() != two.identity()
+    file.unlink()
+    with pytest.raises(CaptureError) as caught:
+        one.identity()
+    assert caught.value.code == "image-missing" and str(file) in str(caught.value)
 
 
 def test_videos_of_another_length_and_rate(tmp_path):

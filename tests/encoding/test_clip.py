@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import signal
 from dataclasses import replace
@@ -9,6 +10,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import eigenfield as ef
 from eigenfield.core.errors import CaptureError, OptionError
@@ -28,6 +30,7 @@ from eigenfield.runtime.executor import open_executor
 from eigenfield.runtime.files import scratch_arrays
 from eigenfield.viewer.exports import write_clip_folder
 from support.captures import backdrop, shaded_texture
+from support.filmed import CALIBRATION_FILE, HEIGHT, WIDTH, opened, picture, timed
 from support.moving_clips import FootageInMemory
 from support.observations import CalibratedInMemory, InMemory
 from support.scenes import row_grid
@@ -184,6 +187,32 @@ def test_frames_with_other_masks_are_other_footage(lit):
     masked = [CalibratedInMemory(InMemory(one.observations.pixels, hidden), CAMERAS) for one in seen.frames]
     assert footage_digest(seen) == footage_digest(replace(seen))
     assert footage_digest(seen) != footage_digest(replace(seen, frames=masked))
+
+
+@pytest.mark.parametrize("change", ["picture", "mask", "offset", "nothing"])
+def test_footage_is_known_by_all_of_its_files_and_frames(tmp_path, change):
+    """Not by those of the instants alone whose pixels are looked at: 2, 7 and 11."""
+    timed(tmp_path, frames=14)
+    document = json.loads((tmp_path / CALIBRATION_FILE).read_text("utf-8"))
+    (tmp_path / "masks").mkdir()
+    for frame in range(14):
+        picture(tmp_path / "cam_1" / f"{frame:06d}.png", 1, 9 if frame == 4 else 8)
+        mask_all(tmp_path / "masks" / f"{frame}.png", 255)
+        document["frames"][14 + frame]["mask_path"] = f"masks/{frame}.png"
+    (tmp_path / CALIBRATION_FILE).write_text(json.dumps(document), encoding="utf-8")
+    before, offset = footage_digest(opened(tmp_path, "2:12")), {}
+    if change == "picture":
+        size = (tmp_path / "cam_1" / "000004.png").stat().st_size
+        assert picture(tmp_path / "cam_1" / "000004.png", 1, 7).stat().st_size == size
+    elif change == "mask":
+        mask_all(tmp_path / "masks" / "4.png", 0)
+    elif change == "offset":
+        offset = {"offset": ["cam_1=1"]}
+    assert (footage_digest(opened(tmp_path, "2:12", **offset)) == before) == (change == "nothing")
+
+
+def mask_all(path, level):
+    Image.new("L", (WIDTH, HEIGHT), level).save(path)
 
 
 @pytest.fixture(scope="module")

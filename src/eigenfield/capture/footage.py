@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -9,12 +11,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from eigenfield.capture.identity import content_digest
 from eigenfield.capture.photographs.lens import Lens
 from eigenfield.capture.photoset import Capture, PhotoSet, Shot
 from eigenfield.capture.tracks import Track, VideoTrack
 from eigenfield.core.brief import brief_repr
 from eigenfield.core.camera import Camera
 from eigenfield.core.clip import Timeline
+from eigenfield.runtime.parallel import parallel_map
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +89,24 @@ class Footage:
     def bytes(self) -> int:
         """Of all its files."""
         return sum(track.bytes for track in self.tracks)
+
+    def identity(self) -> str:
+        """A digest of the frames of all cameras at all instants, and of the bytes of their files and masks.
+
+        As for photographs it is their bytes that count, since a copy of an object has another time. Reading them
+        costs little beside decoding, and whoever opens a video has read all of it for the times of its frames.
+
+        Raises:
+            CaptureError: `image-missing`, a file no longer exists.
+        """
+
+        def contents(camera: int) -> list[str | None]:
+            mask = self.still.sources[camera].mask
+            own = self.tracks[camera].contents(np.unique(self.frames[camera]).tolist())
+            return [None if mask is None else content_digest(mask), *own]
+
+        found = json.dumps(parallel_map(contents, range(len(self.tracks))))
+        return hashlib.sha256(found.encode() + self.frames.tobytes() + self.held.tobytes()).hexdigest()
 
     def instant(self, number: int) -> Capture:
         """All cameras at an instant, counted from 0. Photographs decode when they are asked for, from any thread; that

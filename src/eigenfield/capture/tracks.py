@@ -6,6 +6,7 @@ No frame becomes a file: a video is read by a decoder that stays open between fr
 from __future__ import annotations
 
 import logging
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
@@ -16,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.capture.film import Film
+from eigenfield.capture.identity import content_digest
 from eigenfield.capture.lightfield import View
 from eigenfield.capture.photographs.decoded import size_on_disk
 from eigenfield.capture.photographs.read import decode
@@ -48,6 +50,10 @@ class Track(Protocol):
     def bytes(self) -> int:
         """Of all its files."""
 
+    def contents(self, indices: Iterable[int]) -> list[str | None]:
+        """Digests of the files that some frames are read from, in order, and of their masks. CaptureError
+        `image-missing`."""
+
     def at(self, source: S, index: int, held: bool) -> S:
         """A view or shot with the pixels of a frame.
 
@@ -79,6 +85,10 @@ class PictureTrack:
     @property
     def bytes(self) -> int:
         return sum(map(size_on_disk, self.files))
+
+    def contents(self, indices: Iterable[int]) -> list[str | None]:
+        found = [(self.files[index], self.masks[index] if self.masks else None) for index in indices]
+        return [None if path is None else content_digest(path) for pair in found for path in pair]
 
     def at(self, source: S, index: int, held: bool) -> S:
         mask = self.masks[index] if self.masks and not held else source.mask
@@ -159,6 +169,9 @@ class VideoTrack:
     @property
     def bytes(self) -> int:
         return size_on_disk(self.film.path)
+
+    def contents(self, indices: Iterable[int]) -> list[str | None]:
+        return [content_digest(self.film.path)]
 
     def at(self, source: S, index: int, held: bool) -> S:
         return replace(source, name=self.name, path=self.film.path, picture=_FilmFrame(self.film, index, held))

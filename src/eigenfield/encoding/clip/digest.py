@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 
 
 def footage_digest(footage: Footage) -> list[Any]:
-    """What stands for footage: its clock, its bytes, and the pixels and masks of three instants."""
+    """What stands for footage: its clock, the frames of all its files, and the pixels and masks of three instants,
+    which say how they are decoded."""
     digest = hashlib.sha256()
     for number in (0, len(footage) // 2, len(footage) - 1):
         instant = cast("Observations", footage.instant(number))
@@ -29,4 +30,4 @@ def footage_digest(footage: Footage) -> list[Any]:
 
         for found in chain.from_iterable(parallel_map(codes, range(len(instant)))):
             digest.update(found.data)
-    return [list(footage.names), str(footage.timeline), footage.bytes, digest.hexdigest()]
+    return [list(footage.names), str(footage.timeline), footage.identity(), digest.hexdigest()]
