@@ -107,16 +107,30 @@ def test_a_target_is_reached_by_the_quality_or_the_nearest_is_taken(two, fine, k
         assert 0.8 * fine < size <= 1.03 * fine
 
 
-def test_a_bitrate_is_the_size_of_so_many_seconds(two, monkeypatch):
-    asked = []
+def test_a_bitrate_is_the_size_of_so_many_seconds_beside_their_sound(two, monkeypatch, tmp_path):
+    class ReachedError(Exception):
+        pass
 
     def reached(groups, target, stages, first, progress):
-        asked.append(target)
-        return first
+        raise ReachedError(target)
 
     monkeypatch.setattr("eigenfield.encoding.clip.encode.reach_quality", reached)
-    encode_footage(two, MESH, EncodeOptions(target=Target(bitrate=200_000)), group="1")
-    assert asked == [Target(size=5_000)]  # of 0.2 s
+    sound = tmp_path / "sound.opus"
+    sound.write_bytes(opus(0.1))
+    for audio, taken in ((None, 0), (sound, sound.stat().st_size)):
+        with pytest.raises(ReachedError) as caught:
+            encode_footage(two, MESH, EncodeOptions(target=Target(bitrate=200_000)), group="1", audio=audio)
+        assert caught.value.args == (Target(size=5_000 - taken),)  # of 0.2 s
+
+
+def test_a_sound_that_leaves_nothing_of_a_target_is_refused_before_any_work(two, tmp_path):
+    sound = tmp_path / "sound.opus"
+    sound.write_bytes(opus(1))
+    two.asked.clear()
+    for target in (Target(size=sound.stat().st_size), Target(bitrate=sound.stat().st_size)):
+        with pytest.raises(OptionError) as caught:
+            encode_footage(two, MESH, EncodeOptions(target=target), audio=sound)
+        assert caught.value.code == "target" and str(sound.stat().st_size) in str(caught.value) and not two.asked
 
 
 def stored_bytes(group) -> bytes:

@@ -11,7 +11,8 @@ import pytest
 
 from eigenfield.core.errors import EigenfieldError, FormatError, OptionError, ProxyError
 from eigenfield.core.mesh import Mesh
-from eigenfield.encoding import EncodeOptions, encode_footage
+from eigenfield.encoding import EncodeOptions, Target, encode_footage
+from eigenfield.encoding.clip import target
 from eigenfield.gltf import load_clip, parts, save, validate
 from eigenfield.gltf.clips import StoredGroup
 from eigenfield.gltf.group import group_bytes
@@ -170,6 +171,17 @@ def test_other_triangles_begin_a_group_and_are_drawn_as_well(plate, moving, reto
         for cameras in ((0, 4), HELD_OUT):
             assert measured(loaded, footage, number, cameras) > measured(moving, footage, number, cameras) - 1.0
     assert parts(tmp_path / "clip.glb")["mesh"] > len(clip.groups.coded(1).mesh.data)
+
+
+def test_a_target_counts_the_meshes_of_later_groups(plate, monkeypatch):
+    meshes, footage = plate
+    two, tried = replace(footage, frames=footage.frames[:2]), []
+    monkeypatch.setattr(target, "search_quality", lambda _, code, first: tried.append(code(first)) or tried[-1])
+    options = EncodeOptions(target=Target(size=20_000))
+    clip = encode_footage(two, [meshes[0], other_triangles(meshes[1])], options, group="1")
+    beside = clip.groups.payloads.bytes + target.HEAD_BYTES
+    assert abs(tried[-1].size - beside - sum(one.data.size for one in clip.groups.stored)) < 50
+    assert len(clip.groups.coded(1).mesh.data) > 400
 
 
 def test_a_damaged_mesh_of_a_group_costs_this_group_alone(retopologised):

@@ -169,7 +169,7 @@ def encode_footage(
 
     Raises:
         OptionError: `clip-proxy`, the surface would be of sheets; `clip-cameras`, the cameras are not known;
-            `clip-option`, an option is for one instant; `group-unknown`.
+            `clip-option`, an option is for one instant; `group-unknown`; `target`, the sound leaves nothing of a size.
         CaptureError, ProxyError, OutputError: Each names the file and the remedy.
     """
     from eigenfield.encoding.clip.encode import encode_clip

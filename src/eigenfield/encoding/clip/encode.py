@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, cast
 
 from eigenfield.capture.readers.audio import read_opus
 from eigenfield.core.arguments import kind_in_words
-from eigenfield.core.clip import Audio, Clip
+from eigenfield.core.clip import Audio, Clip, Timeline
 from eigenfield.core.errors import OptionError, ProxyError, one_line
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.observations import CalibratedObservations
@@ -86,7 +86,7 @@ def encode_clip(
         sound: An Ogg file of Opus, which begins at second 0 of the footage.
 
     Raises:
-        OptionError: `clip-proxy`, `clip-cameras`, `clip-option`, `group-unknown`.
+        OptionError: `clip-proxy`, `clip-cameras`, `clip-option`, `group-unknown`, `target`.
         CaptureError, ProxyError, OutputError: As `encode`.
     """
     refuse_still_options(asked)
@@ -96,6 +96,7 @@ def encode_clip(
     _refuse_proxy(footage, proxy, asked)
     audio = None if sound is None else Audio(read_opus(sound))
     length = group_length(asked.group, footage.timeline.rate)
+    target = _target_of_frames(asked.target, footage.timeline, audio)
     if work is not None:
         make_folder(work)
     if surface is not None:
@@ -110,8 +111,8 @@ def encode_clip(
 
     with Stages(None if work is None else work / "clip") as stages:
         groups = groups_of(asked)
-        if asked.target is not None:
-            asked = _reach_target(groups, groups_of, asked, stages, progress)
+        if target is not None:
+            asked = _reach_target(groups, groups_of, asked, target, stages, progress)
             groups = groups_of(asked)
         begin_step(progress, "fit")
         made, layout = groups.make_all(stages, workers, progress)
@@ -133,20 +134,32 @@ def encode_clip(
     return replace(clip, audio=audio, rights=asked.rights or Rights())
 
 
+def _target_of_frames(asked: Target | None, timeline: Timeline, sound: Audio | None) -> Target | None:
+    """The target for all but the sound, without a bitrate. OptionError `target`: nothing is left."""
+    if asked is None or (asked.size is None and asked.bitrate is None):
+        return asked
+    size = asked.size or math.floor((asked.bitrate or 0) / 8 * timeline.frames / timeline.rate)
+    taken = len(b"" if sound is None else sound.data)
+    if size <= taken:
+        message = f"a target of {size} bytes leaves nothing beside {taken} bytes of sound"
+        raise OptionError("target", message, remedy="ask for more, or give a sound of a lower bitrate")
+    return Target(size=size - taken)
+
+
 def _reach_target(
     groups: Groups,
     groups_of: Callable[[EncodeOptions], Groups],
     asked: EncodeOptions,
+    target: Target,
     stages: Stages,
     progress: Progress | None,
 ) -> EncodeOptions:
     """The options with the quality that reaches the target. Where that is far from the preset's, it is searched again
-    on the mesh and the atlas that belong to it."""
-    target = asked.target
-    assert target is not None
-    if target.bitrate is not None:
-        timeline = groups.footage.timeline
-        target = Target(size=math.floor(target.bitrate / 8 * timeline.frames / timeline.rate))
+    on the mesh and the atlas that belong to it.
+
+    Args:
+        target: Of `_target_of_frames`.
+    """
     begin_step(progress, "trial")
     usual = PRESETS[resolved_value(groups.runs[0].plan.options.preset)].quality
     found = usual

@@ -90,7 +90,9 @@ def _attempt(groups: Groups, samples: list[_Sample], target: Target, quality: in
             )  # fmt: skip
             measured += [_measured(target, alone, group, number)
                          for number in spread_indices(len(group), MEASURED_FRAMES)]  # fmt: skip
-    total = taken / frames * len(groups.footage) + HEAD_BYTES + groups.runs[0].plan.payloads.bytes
+    first, *later = groups.runs
+    meshes = sum(len(run.spans) * run.plan.mesh_bytes for run in later)  # each of their groups has its own
+    total = taken / frames * len(groups.footage) + HEAD_BYTES + first.plan.payloads.bytes + meshes
     return Attempt(quality, round(total), float(np.mean(measured)) if measured else 0.0, None)
 
 
