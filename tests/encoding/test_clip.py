@@ -31,6 +31,7 @@ from eigenfield.runtime.files import scratch_arrays
 from eigenfield.viewer.exports import write_clip_folder
 from support.captures import backdrop, shaded_texture
 from support.filmed import CALIBRATION_FILE, HEIGHT, WIDTH, opened, picture, timed
+from support.glb_surgery import split
 from support.moving_clips import FootageInMemory
 from support.observations import CalibratedInMemory, InMemory
 from support.scenes import row_grid
@@ -127,9 +128,9 @@ def test_a_sound_that_leaves_nothing_of_a_target_is_refused_before_any_work(two,
     sound = tmp_path / "sound.opus"
     sound.write_bytes(opus(1))
     two.asked.clear()
-    for target in (Target(size=sound.stat().st_size), Target(bitrate=sound.stat().st_size)):
+    for asked in (Target(size=sound.stat().st_size), Target(bitrate=sound.stat().st_size)):
         with pytest.raises(OptionError) as caught:
-            encode_footage(two, MESH, EncodeOptions(target=target), audio=sound)
+            encode_footage(two, MESH, EncodeOptions(target=asked), audio=sound)
         assert caught.value.code == "target" and str(sound.stat().st_size) in str(caught.value) and not two.asked
 
 
@@ -184,6 +185,27 @@ def test_a_clip_is_saved_and_loaded(lit, tmp_path):
             Renderer(one.scene(time)).draw(CAMERAS[4], camera_weights(one.scene(time), 4)) for one in (clip, loaded)
         ]
         np.testing.assert_array_equal(drawn[0].image, drawn[1].image)
+
+
+@pytest.mark.parametrize("fallback", ["none", "good"])
+def test_what_other_viewers_get_is_as_asked_and_makes_no_other_groups(lit, tmp_path, fallback):
+    seen, clip, work = lit
+    made = encode_footage(seen, MESH, replace(OPTIONS, fallback=fallback), group="3", work=work)
+    assert list(map(stored_bytes, made.groups.stored)) == list(map(stored_bytes, clip.groups.stored))
+    save(made, tmp_path / "clip.glb")
+    assert load_clip(tmp_path / "clip.glb").settings["fallback"] == fallback
+    assert ("meshes" in split((tmp_path / "clip.glb").read_bytes())[0]) == (fallback == "good")
+
+
+@pytest.mark.slow
+def test_a_target_counts_what_other_viewers_get(monkeypatch, tmp_path):
+    tried = []
+    monkeypatch.setattr(
+        "eigenfield.encoding.clip.target.search_quality", lambda _, code, first: tried.append(code(97)) or tried[-1]
+    )
+    options = EncodeOptions(target=Target(size=14_000), fallback="good")
+    save(encode_footage(footage(1.0), MESH, options), tmp_path / "clip.glb")
+    assert 0 <= tried[-1].size - (tmp_path / "clip.glb").stat().st_size < 2600  # a small one is counted besides
 
 
 def test_finished_groups_are_taken_up_and_nothing_else_is_kept(lit):

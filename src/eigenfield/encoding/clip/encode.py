@@ -36,6 +36,7 @@ from eigenfield.encoding.prepare import coded_plan, plan_encoding
 from eigenfield.encoding.reach_target import REFIT_MAX_NEAR_QUALITIES
 from eigenfield.encoding.target import Target
 from eigenfield.gltf.clips import coded_clip
+from eigenfield.gltf.fallback import with_fallback
 from eigenfield.proxy import refuse_no_mesh
 from eigenfield.proxy.atlas.unwrap import UNWRAP_MIN_TRIANGLES
 from eigenfield.proxy.meshes.sequence import is_sequence, read_sequences
@@ -107,7 +108,8 @@ def encode_clip(
     def groups_of(asked: EncodeOptions) -> Groups:
         runs = _runs(footage, proxy, asked, length, work, progress)
         meshes = [[_plan_digest(run.plan), None if run.moving is None else run.moving.digest] for run in runs]
-        return Groups(footage, tuple(runs), stage_key([digest, replace(asked, rights=None), meshes], SCENE_ROOMS), work)
+        key = stage_key([digest, replace(asked, rights=None, fallback=None), meshes], SCENE_ROOMS)
+        return Groups(footage, tuple(runs), key, work)
 
     with Stages(None if work is None else work / "clip") as stages:
         groups = groups_of(asked)
@@ -131,7 +133,8 @@ def encode_clip(
         payloads=plan.payloads,
         sheets=None if plan.proxy.sheets is None else plan.proxy.sheets.faces,
     )
-    return replace(clip, audio=audio, rights=asked.rights or Rights())
+    clip = replace(clip, audio=audio, rights=asked.rights or Rights())
+    return clip if asked.fallback is None else with_fallback(clip, asked.fallback)
 
 
 def _target_of_frames(asked: Target | None, timeline: Timeline, sound: Audio | None) -> Target | None:

@@ -19,7 +19,9 @@ from eigenfield.encoding.clip.open_loop import OpenGroup
 from eigenfield.encoding.fitted.colour import to_rgb
 from eigenfield.encoding.target import Attempt, Target, search_quality
 from eigenfield.gltf import coded_clip
+from eigenfield.gltf.fallback import with_fallback
 from eigenfield.gltf.group import group_bytes
+from eigenfield.gltf.write_clip import clip_blocks
 from eigenfield.imaging.metrics import psnr, ssim, to_codes
 from eigenfield.rendering import Renderer, camera_weights
 from eigenfield.runtime.parallel import parallel_stream
@@ -28,7 +30,7 @@ from eigenfield.runtime.stages import SCENE_ROOMS, Stages, stage_key
 log = logging.getLogger("eigenfield.encode")
 
 SAMPLE_GROUPS = 3  # that are coded at each quality
-HEAD_BYTES = 3000  # of a file, beside its groups, its mesh and its cameras
+HEAD_BYTES = 3000  # of a file, beside its groups, its mesh and its cameras; a small fallback is in it
 SPARE_RATIO = 0.97  # of a size that is aimed at where not all groups were coded
 MEASURED_FRAMES, MEASURED_CAMERAS = 3, 16  # of a group, in which a PSNR or SSIM is measured
 
@@ -72,7 +74,7 @@ def reach_quality(groups: Groups, target: Target, stages: Stages, first: int, pr
 def _attempt(groups: Groups, samples: list[_Sample], target: Target, quality: int) -> Attempt[None]:
     """What the whole clip takes at a quality, by its samples."""
     counts: tuple[int, ...] | None = None
-    taken, frames, measured = 0, 0, []
+    taken, frames, measured, beside = 0, 0, [], HEAD_BYTES
     for sample in samples:
         clip = sample.frames.clip.at_quality(quality)
         group = replace(sample.frames, clip=clip, identity=stage_key([sample.frames.identity, quality], SCENE_ROOMS))
@@ -81,19 +83,27 @@ def _attempt(groups: Groups, samples: list[_Sample], target: Target, quality: in
         coded, _ = code_group(group, sample.opened, layout, sample.opacity)
         data = group_bytes(coded)
         taken, frames = taken + len(data), frames + len(group)
+        plan, rate = clip.plan, groups.footage.timeline.rate
+        alone = coded_clip(
+            plan.views.rig, plan.mesh, Timeline(rate, len(group)), layout, [data], [len(group)],
+            to_rgb=to_rgb(), settings={}, scores={}, generator="", payloads=plan.payloads,
+            sheets=None if plan.proxy.sheets is None else plan.proxy.sheets.faces,
+        )  # fmt: skip
         if target.size is None:
-            plan, rate = clip.plan, groups.footage.timeline.rate
-            alone = coded_clip(
-                plan.views.rig, plan.mesh, Timeline(rate, len(group)), layout, [data], [len(group)],
-                to_rgb=to_rgb(), settings={}, scores={}, generator="", payloads=plan.payloads,
-                sheets=None if plan.proxy.sheets is None else plan.proxy.sheets.faces,
-            )  # fmt: skip
             measured += [_measured(target, alone, group, number)
                          for number in spread_indices(len(group), MEASURED_FRAMES)]  # fmt: skip
+        elif sample is samples[0] and plan.asked.fallback == "good":
+            beside += _fallback_bytes(alone)
     first, *later = groups.runs
     meshes = sum(len(run.spans) * run.plan.mesh_bytes for run in later)  # each of their groups has its own
-    total = taken / frames * len(groups.footage) + HEAD_BYTES + first.plan.payloads.bytes + meshes
+    total = taken / frames * len(groups.footage) + beside + first.plan.payloads.bytes + meshes
     return Attempt(quality, round(total), float(np.mean(measured)) if measured else 0.0, None)
+
+
+def _fallback_bytes(clip: Clip) -> int:
+    """What `--fallback good` takes, which is of the first frame."""
+    good, none = (sum(map(len, clip_blocks(with_fallback(clip, one), None))) for one in ("good", "none"))
+    return good - none
 
 
 def _measured(target: Target, clip: Clip, group: GroupFrames, number: int) -> float:
