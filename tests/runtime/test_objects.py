@@ -9,10 +9,12 @@ import pytest
 
 import eigenfield as ef
 from eigenfield.core.errors import OptionError, OutputError
+from eigenfield.encoding import EncodeOptions, encode_footage
 from eigenfield.runtime.files import write_bytes
 from eigenfield.runtime.objects import DONE, find_objects, local_copy, remove_copies
 from eigenfield.runtime.stages import Stages
 from support.captures import write_array, write_capture
+from support.moving_plate import filmed
 
 fsspec = pytest.importorskip("fsspec", reason="pip install 'eigenfield[s3]'")
 MemoryFile = pytest.importorskip("fsspec.implementations.memory").MemoryFile
@@ -234,6 +236,57 @@ def put_captures(tmp_path: Path, address: str) -> tuple[dict[str, object], Path]
     put(tmp_path / "captures", f"{address}/captures")
     proxy = tmp_path / "captures" / "one" / "proxy.ply"
     return {"proxy": str(proxy), "fit": "none", "textures": 2, "atlas": 64}, tmp_path / "captures"
+
+
+def test_a_clip_goes_on_from_a_store_after_the_last_finished_frame(store):
+    meshes, footage = filmed(2)
+    options = EncodeOptions(fit="none", textures=2, atlas=64)
+    whole = encode_footage(footage, meshes[0], options)
+
+    class StoppedError(Exception):
+        pass
+
+    def stop(stage, done, total):
+        if stage.endswith("textures") and done == 1:
+            raise StoppedError
+
+    with pytest.raises(StoppedError):
+        encode_footage(footage, meshes[0], options, work="memory://lab/work", progress=stop)
+    assert stages_in(store) == ["inner-products-00000", "inner-products-00001", "textures-00000"]
+    remove_copies()  # another machine
+    footage.asked.clear()
+    made = encode_footage(footage, meshes[0], options, work="memory://lab/work")
+    assert footage.asked == [0, 1, 1, 1, 1]  # three that tell it from other footage, the mesh's, and what was not made
+    assert made.groups.coded(0).units == whole.groups.coded(0).units
+    assert stages_in(store) == ["group-0000"]
+
+
+def stages_in(store) -> list[str]:
+    return sorted({path.split("/")[-2].rpartition("-")[0] for path in store.find("/lab/work/clip")})
+
+
+def test_a_stage_that_may_not_be_removed_stays(store, monkeypatch):
+    stages = Stages(Path("memory://lab/work"))
+    folder = stages.run("mean", "k", lambda folder: None)
+    with monkeypatch.context() as patch:
+        patch.setattr(type(store), "rm", lambda *_, **__: (_ for _ in ()).throw(PermissionError("no")))
+        stages.remove(folder)
+    assert not folder.exists() and store.exists(f"/lab/work/mean-k/{DONE}")
+    stages.remove(stages.find("mean", "k"))
+    assert stages.find("mean", "k") is None
+
+
+@pytest.mark.slow
+def test_workers_leave_the_groups_of_a_clip_in_s3(s3, run, tmp_path):
+    for number in range(3):
+        write_capture(tmp_path / "footage" / f"{number:04d}")
+    mesh = tmp_path / "footage" / "0000" / "proxy.ply"
+    words = "--clip", "--proxy", mesh, "--fit", "none", "--textures", 2, "--atlas", 64, "--group", 1, "-q"
+    ran = run("encode", tmp_path / "footage", *words, "--workers", 2, "-o", f"{s3}/clip.glb")
+    assert ran.code == 0, ran.err
+    assert len(find_objects(f"{s3}/clip.work/clip").names()) == 3
+    assert run("encode", tmp_path / "footage", *words, "-o", tmp_path / "clip.glb").code == 0
+    assert find_objects(f"{s3}/clip.glb").read() == (tmp_path / "clip.glb").read_bytes()
 
 
 @pytest.mark.slow

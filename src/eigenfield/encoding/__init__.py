@@ -161,7 +161,8 @@ def encode_footage(
         options: What is asked for; None for the defaults. Those that are for one instant are refused.
         surface_options: How a surface is made that is not given; None for the defaults. It is opaque.
         audio: An Ogg file of Opus, kept as it is, which begins at second 0 of the footage.
-        work: Folder that keeps finished stages, so that the same call goes on from there. None: a temporary one.
+        work: Folder that keeps finished stages, or an address of an object store, so that the same call goes on from
+            there. None: a temporary folder.
         workers: Of `open_executor`: they make the groups after the first, with the same bytes. They see `work` and the
             footage.
         progress: Reports each pass by frames; by default bars in a notebook. None: nothing is reported.
@@ -176,5 +177,5 @@ def encode_footage(
 
     refuse_unknown(changes, OPTION_NAMES, "encode")
     options = replace(options or EncodeOptions(), **changes)
-    folder = None if work is None or find_objects(work) else Path(work)
+    folder = None if work is None else Path(work)
     return encode_clip(footage, proxy, options, folder, progress, workers, surface_options, audio)

@@ -180,6 +180,11 @@ class Objects:
                 self.fs.put([str(place / file) for file in digests], [f"{self.root}/{name}/{file}" for file in digests])
             self.fs.pipe_file(f"{self.root}/{name}/{DONE}", json.dumps(digests).encode())
 
+    def remove_stage(self, name: str) -> None:
+        """Remove a stage from the store. Raises OptionError `object-missing`, `store`."""
+        with _store_errors(self.address):
+            self.fs.rm(f"{self.root}/{name}", recursive=True)
+
     def _get(self, targets: dict[str, Path]) -> None:
         for target in targets.values():
             target.parent.mkdir(parents=True, exist_ok=True)

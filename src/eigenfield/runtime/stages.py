@@ -11,13 +11,14 @@ import contextlib
 import hashlib
 import json
 import logging
+import shutil
 import weakref
 from collections.abc import Callable, Iterable
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from eigenfield.core.errors import OutputError
+from eigenfield.core.errors import OptionError, OutputError
 from eigenfield.runtime.files import flush_folder, output_errors, rename
 from eigenfield.runtime.objects import find_objects, local_folder
 from eigenfield.runtime.temporary import temporary_folder
@@ -104,6 +105,18 @@ class Stages:
                 self.objects.put_stage(place.name, part)
             self._appear(part, place)
         return place
+
+    @property
+    def place(self) -> Path:
+        """The folder, or the address of the object store: where workers find and leave stages."""
+        return self.folder if self.objects is None else Path(self.objects.address)
+
+    def remove(self, folder: Path) -> None:
+        """Remove a stage that is needed no more. What cannot be removed stays."""
+        shutil.rmtree(folder, ignore_errors=True)
+        if self.objects is not None:
+            with contextlib.suppress(OptionError):  # credentials that may write need not be allowed to remove
+                self.objects.remove_stage(folder.name)
 
     @staticmethod
     def _appear(part: Path, place: Path) -> None:

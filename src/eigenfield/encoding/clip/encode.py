@@ -42,6 +42,7 @@ from eigenfield.proxy.atlas.unwrap import UNWRAP_MIN_TRIANGLES
 from eigenfield.proxy.meshes.sequence import is_sequence, read_sequences
 from eigenfield.reconstruction import SurfaceOptions
 from eigenfield.runtime.files import make_folder
+from eigenfield.runtime.objects import find_objects
 from eigenfield.runtime.parallel import even_pieces
 from eigenfield.runtime.stages import SCENE_ROOMS, Stages, stage_key
 from eigenfield.runtime.tasks import Workers
@@ -80,7 +81,7 @@ def encode_clip(
         proxy: Opaque; or a mesh for each frame (`read_sequences`), or a `MovingProxy`, maybe of sheets, the backmost of
             which is opaque. None: the surface that `still_capture` shows.
         asked: Options; those that clips have no use for are refused.
-        work: Folder that keeps finished stages; None: nothing is kept.
+        work: Folder that keeps finished stages, or an address of an object store; None: nothing is kept.
         workers: That make all groups but the first, which says how many textures there are; they see `work` and the
             footage. None: this process makes all.
         given: How a surface is made that is not given; None for the defaults.
@@ -98,18 +99,19 @@ def encode_clip(
     audio = None if sound is None else Audio(read_opus(sound))
     length = group_length(asked.group, footage.timeline.rate)
     target = _target_of_frames(asked.target, footage.timeline, audio)
-    if work is not None:
-        make_folder(work)
+    scratch = None if work is None or find_objects(work) else work  # such files stay on this machine
+    if scratch is not None:
+        make_folder(scratch)
     if surface is not None:
         footage, proxy, asked = estimate_still_surface(footage, asked, surface, work, progress)
     assert proxy is not None
     digest = footage_digest(footage)
 
     def groups_of(asked: EncodeOptions) -> Groups:
-        runs = _runs(footage, proxy, asked, length, work, progress)
+        runs = _runs(footage, proxy, asked, length, scratch, progress)
         meshes = [[_plan_digest(run.plan), None if run.moving is None else run.moving.digest] for run in runs]
         key = stage_key([digest, replace(asked, rights=None, fallback=None), meshes], SCENE_ROOMS)
-        return Groups(footage, tuple(runs), key, work)
+        return Groups(footage, tuple(runs), key, scratch)
 
     with Stages(None if work is None else work / "clip") as stages:
         groups = groups_of(asked)

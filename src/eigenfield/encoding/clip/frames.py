@@ -4,7 +4,6 @@ frame of one pass at most, and memory has one frame at a time."""
 from __future__ import annotations
 
 import contextlib
-import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -193,7 +192,7 @@ class GroupFrames:
     def clear(self) -> None:
         """Remove what the passes kept, once the group is whole."""
         for folder in self.made:
-            shutil.rmtree(folder, ignore_errors=True)
+            self.stages.remove(folder)
         self.made.clear()
 
 

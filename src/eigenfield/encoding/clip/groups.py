@@ -158,7 +158,7 @@ class Groups:
         films = sum(width * height for width, height in layout.sizes)
         task = Task(make_group, PASSES_MEMORY_BYTES + FILM_PIXEL_MEMORY_BYTES * films)
         with share([self], stages.folder) as (shared,):
-            calls = [(task, stages.folder, shared, number, counts) for number in range(1, len(self.spans))]
+            calls = [(task, stages.place, shared, number, counts) for number in range(1, len(self.spans))]
             for _ in track(spread(workers, calls), "groups on workers", len(calls), progress):
                 pass
 
@@ -193,10 +193,10 @@ def _projected(frames: GroupFrames) -> tuple[CodedGroup, list[float], tuple[int,
     return *code_group(frames, opened, frames.clip.layout(kept), None, closed=False), kept
 
 
-def make_group(folder: Path, shared: Shared[Groups], number: int, counts: tuple[int, ...]) -> None:
-    """Make the stage of one group in a folder, on a worker."""
+def make_group(place: Path, shared: Shared[Groups], number: int, counts: tuple[int, ...]) -> None:
+    """Make the stage of one group in a folder or at an address, on a worker."""
     groups = shared.value()
-    with Stages(folder) as stages:
+    with Stages(place) as stages:
         if stages.find(_name(number), groups.key(number, counts)) is None:
             with groups.open_run(groups.run_of(number)) as clip:
                 groups.make(clip, stages, number, counts, None)

@@ -82,7 +82,7 @@ def estimate_still_surface(
     """
     with Stages(work) as stages:
         still = still_capture(footage, stages, progress)
-        made = estimate(still, asked, surface, stages.folder, None, progress)
+        made = estimate(still, asked, surface, work or stages.folder, None, progress)
         views = made.light_field.views
         shown = footage.subset(footage.names.index(view.name) for view in views)
         shown = shown.with_cameras(made.light_field.cameras, [view.lens for view in views])
