@@ -10,7 +10,8 @@ import pytest
 from eigenfield.capture import open_capture
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
-from eigenfield.encoding import EncodeOptions
+from eigenfield.core.proxy import Proxy
+from eigenfield.encoding import EncodeOptions, prepare
 from eigenfield.encoding.geometry.simplify_surface import _cleared, _loss, _points, _view, simplify_surface_rd
 from eigenfield.encoding.options import density_for_quality
 from eigenfield.encoding.prepare import plan_at_quality, plan_encoding
@@ -82,7 +83,7 @@ def test_the_loss_is_that_of_a_texture_drawn_at_the_wrong_depth():
         pictures.append(np.tile(np.cos(angle * x * camera.K[0, 0] / 3.0), (camera.height, 1)).astype(np.float32))
     views = [_view(wall, camera, 0, picture) for camera, picture in zip(cameras, pictures, strict=True)]
     looked = [_points(views, number) for number in range(3)]
-    assert _loss(wall, views, looked) == pytest.approx(0, abs=1e-9)
+    assert _loss(wall, views, looked, True) == pytest.approx(0, abs=1e-9)
     off = 0.5 / (0.5 * cameras[0].K[0, 0])  # of inverse depth, for half a pixel between neighbours
     near = replace(wall, vertices=wall.vertices + np.float32([0, 0, 1 / (1 / 3 + off) - 3]))
     # An outer camera's points lie half a pixel off beside its neighbour, one beside the other; the middle one's half a
@@ -91,7 +92,7 @@ def test_the_loss_is_that_of_a_texture_drawn_at_the_wrong_depth():
     both, one = 1 - 2 * away, away
     squares = 2 * (both * ((0.5 + 1) / 2) ** 2 + one * 0.5**2) + 2 * one * 0.5**2
     slope = 0.5 * angle**2
-    assert _loss(near, views, looked) == pytest.approx(views[0].grey.size * slope * squares, rel=0.08)
+    assert _loss(near, views, looked, True) == pytest.approx(views[0].grey.size * slope * squares, rel=0.08)
 
 
 def test_at_a_silhouette_two_unlike_values_differ_and_no_texture_corrects_it():
@@ -106,7 +107,8 @@ def test_at_a_silhouette_two_unlike_values_differ_and_no_texture_corrects_it():
     shown = [(one > 0) & (one < 0.99 * view.inverse_depth) for one, view in zip(drawn, views, strict=True)]
     assert all(0.25 < one.mean() < 0.7 for one in shown)
     expected = sum(float(view.around[one].sum()) for one, view in zip(shown, views, strict=True)) * 2 / 0.4
-    assert _loss(both, views, looked) == pytest.approx(expected, rel=0.02)
+    assert _loss(both, views, looked, True) == pytest.approx(expected, rel=0.02)
+    assert _loss(both, views, looked, False) < expected / 5  # at most the variance, of which 0.4 remain
 
 
 def test_where_nothing_is_left_the_picture_is_black():
@@ -115,7 +117,9 @@ def test_where_nothing_is_left_the_picture_is_black():
     views = [_view(wall, camera, 0, stripes(camera)) for camera in CAMERAS]
     looked = [_points(views, number) for number in range(len(views))]
     gone = [view.grey[_view(half, view.camera, 0, view.grey).inverse_depth <= 0] for view in views]
-    assert _loss(half, views, looked) == pytest.approx(sum(float(np.square(one).sum()) for one in gone) / 0.4, rel=1e-5)
+    assert _loss(half, views, looked, True) == pytest.approx(
+        sum(float(np.square(one).sum()) for one in gone) / 0.4, rel=1e-5
+    )
 
 
 def test_large_photographs_are_looked_at_smaller():
@@ -174,7 +178,22 @@ def test_the_mesh_is_the_one_whose_pictures_were_measured():
     looked = [_points(views, number) for number in range(len(views))]
     at_once = simplify_mesh(mesh, 3362 // 4)
     assert len(found.faces) == pytest.approx(len(at_once.faces), abs=2)
-    assert _loss(found, views, looked) <= _loss(at_once, views, looked)
+    assert _loss(found, views, looked, True) <= _loss(at_once, views, looked, True)
+
+
+@pytest.mark.parametrize("is_estimated", [False, True])
+def test_silhouettes_of_an_estimated_surface_do_not_count_in_full(tmp_path, monkeypatch, is_estimated):
+    given = ball(radius=1.5, level=2)
+    field = open_capture(write_capture(tmp_path / "ball", tuple(nine_cameras()), unwrap_mesh(given)))
+    counted = []
+
+    def watched(*arguments, silhouettes):
+        counted.append(silhouettes)
+        return simplify_surface_rd(*arguments, silhouettes=silhouettes)
+
+    monkeypatch.setattr(prepare, "simplify_surface_rd", watched)
+    plan_encoding(field, Proxy(given) if is_estimated else given, EncodeOptions(quality=55))
+    assert counted == [not is_estimated]
 
 
 @pytest.mark.parametrize(("faces_camera", "left"), [(True, 18), (False, 0)])

@@ -111,7 +111,9 @@ def _prepare(
         if proxy.sheets is not None:
             return _prepare_sheets(proxy, views, options, work, progress, exact)
         proxy = proxy.mesh
-    simplified = _simplified_by_pictures(views, _for_surface(asked, views)) if _simplifies(options) else None
+    simplified = None
+    if _simplifies(options):
+        simplified = _simplified_by_pictures(views, _for_surface(asked, views), is_estimated=isinstance(given, Proxy))
     mesh = prepare_proxy(
         proxy,
         cameras,
@@ -167,7 +169,9 @@ def _at_usual_reference(views: CaptureViews, options: EncodeOptions, mesh: Mesh)
     return views if options.reference else views.with_reference(usual_reference(views, mesh))
 
 
-def _simplified_by_pictures(views: CaptureViews, options: EncodeOptions) -> Callable[[Mesh], Mesh | None]:
+def _simplified_by_pictures(
+    views: CaptureViews, options: EncodeOptions, *, is_estimated: bool
+) -> Callable[[Mesh], Mesh | None]:
     """A function from a mesh as it was read to the mesh simplified by rate and distortion at the options' quality.
 
     It returns None for a relief, which is simplified when it is coded.
@@ -177,7 +181,9 @@ def _simplified_by_pictures(views: CaptureViews, options: EncodeOptions) -> Call
         if mesh.uv is not None and relief_lattice(mesh, views.rig.cameras, DEPTH_ERROR_PX) is not None:
             return None
         lambda_ = byte_lambda(resolved_value(options.quality)) / resolved_value(options.density) ** 2
-        return simplify_surface_rd(mesh, views.rig.encoded_cameras, views.observations, lambda_)
+        return simplify_surface_rd(
+            mesh, views.rig.encoded_cameras, views.observations, lambda_, silhouettes=not is_estimated
+        )
 
     return simplified
 

@@ -91,13 +91,14 @@ class _Points:
 
 
 def simplify_surface_rd(
-    mesh: Mesh, cameras: Sequence[Camera], observations: Observations, lambda_: float
+    mesh: Mesh, cameras: Sequence[Camera], observations: Observations, lambda_: float, silhouettes: bool = True
 ) -> Mesh | None:
     """The mesh with the triangles of least rate-distortion cost, by `proxy.simplify_mesh`.
 
     Args:
         observations: Those of TRIANGLE_MAX_CAMERAS cameras, spread over the array, are decoded.
         lambda_: Squared error for one byte, for each pixel that a texel is seen in, at one texel a pixel.
+        silhouettes: Whether the mesh's silhouettes are the scene's; those of an estimated surface are often noise.
 
     Returns:
         The mesh without UVs; None where as many as it has, at most PROXY_DEFAULT_TRIANGLES, are best.
@@ -128,7 +129,7 @@ def simplify_surface_rd(
         tried = [one for start in starts if (one := _simplified(start, int(count))) is not None]
         if not tried:
             break
-        loss, simpler = min(((_loss(one, views, samples), one) for one in tried), key=lambda pair: pair[0])
+        loss, simpler = min(((_loss(one, views, samples, silhouettes), one) for one in tried), key=lambda pair: pair[0])
         remaining = REMAINING_LOSS_RATIO * share * loss
         cost = lambda_ * len(simpler.faces) + remaining
         log.debug("%d triangles: cost %.4g, of it bytes %.4g", len(simpler.faces), cost, cost - remaining)
@@ -182,7 +183,7 @@ def _points(views: Sequence[_View], number: int) -> _Points:
     return _Points((row, column), world, each, beside)
 
 
-def _loss(mesh: Mesh, views: Sequence[_View], samples: Sequence[_Points]) -> float:
+def _loss(mesh: Mesh, views: Sequence[_View], samples: Sequence[_Points], silhouettes: bool) -> float:
     """Squared error of luma in all views together, of which textures leave REMAINING_LOSS_RATIO.
 
     What no texture corrects counts for more: where another surface is seen, or none is left.
@@ -202,9 +203,10 @@ def _loss(mesh: Mesh, views: Sequence[_View], samples: Sequence[_Points]) -> flo
             farthest = np.maximum(farthest, np.where(there, np.abs(shift).max(axis=1), 0))
         around = view.around[points.pixel]
         squares = np.minimum(np.square(error / np.maximum(points.seen - 1, 1)), around)
-        unlike = np.abs(here / view.inverse_depth[points.pixel] - 1) > SILHOUETTE_MIN_DEPTH_RATIO
-        unlike &= farthest > SILHOUETTE_MIN_PX
-        squares[unlike] = 2 * around[unlike] / REMAINING_LOSS_RATIO
+        if silhouettes:
+            unlike = np.abs(here / view.inverse_depth[points.pixel] - 1) > SILHOUETTE_MIN_DEPTH_RATIO
+            unlike &= farthest > SILHOUETTE_MIN_PX
+            squares[unlike] = 2 * around[unlike] / REMAINING_LOSS_RATIO
         return view.pixels * (points.each * float(squares[here > 0].sum()) + holes / REMAINING_LOSS_RATIO)
 
     return sum(parallel_map(of_view, range(len(views))))
