@@ -6,11 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.spatial import KDTree
 
 from eigenfield.core.camera import Camera
 from eigenfield.core.mesh import Mesh
 from eigenfield.imaging.raster import rasterise_view
-from eigenfield.proxy import simplify_mesh, weld_vertices
+from eigenfield.proxy import simplify, simplify_mesh, weld_vertices
 from eigenfield.proxy.background import join_meshes
 from support.surfaces import looking, square
 
@@ -79,3 +80,26 @@ def test_vertices_are_welded_that_rounding_parts_and_no_others():
     assert len(weld_vertices(mesh).vertices) == len(mesh.vertices) - 41
     fine = square(1e-5, 1.0, 11)  # a step of 2e-6, at 1: 17 units in the last place
     assert len(weld_vertices(fine).vertices) == 121
+
+
+def test_what_reaches_far_joins_no_more_of_what_is_near(monkeypatch):
+    fine, far = square(1.0, 0.0, 40), square(1e6, 5.0, 3)
+    pairs = []
+
+    class Counted(KDTree):
+        def query_pairs(self, *args, **options):
+            found = super().query_pairs(*args, **options)
+            pairs.append(len(found))
+            return found
+
+    monkeypatch.setattr(simplify, "KDTree", Counted)
+    assert len(weld_vertices(join_meshes(fine, far)).vertices) == 1600 + 9
+    assert sum(pairs) == 0  # with the reach of the far ones, 0.25, all within it would be pairs
+
+
+def test_vertices_either_side_of_a_power_of_two_are_welded():
+    """Of two squares that meet in a plane where float32's steps double, one is 3 of the larger steps off."""
+    near, far = square(1.0, 2.0, 5), square(1.0, 2.0, 5)
+    near.vertices[:, 2] -= np.float32(2.0**-22)
+    far.vertices[:, 2] += np.float32(2 * 2.0**-22)
+    assert len(weld_vertices(join_meshes(near, far)).vertices) == 25

@@ -37,10 +37,16 @@ def weld_vertices(mesh: Mesh) -> Mesh:
 
 def _places(vertices: NDArray[np.float32]) -> NDArray[np.int32]:
     """(n,) number of each vertex's place, in the order of their first: vertices that rounding parts share one."""
-    ulps = WELD_MAX_ULPS * np.spacing(np.abs(vertices).max(axis=1)).astype(np.float64)
-    pairs = KDTree(vertices).query_pairs(float(ulps.max(initial=0)), output_type="ndarray")
-    apart = np.linalg.norm(np.diff(vertices[pairs].astype(np.float64), axis=1)[:, 0], axis=1)
-    one, other = pairs[apart <= ulps[pairs].max(axis=1)].T
+    largest = np.abs(vertices).max(axis=1)
+    ulps = WELD_MAX_ULPS * np.spacing(largest).astype(np.float64)
+    found = [np.zeros((0, 2), np.int64)]
+    for reach in np.unique(ulps):  # by octaves: with the reach of what is far, all that is near would be one pair
+        low = largest[ulps == reach].min() - reach
+        some = np.flatnonzero((ulps <= reach) & (largest >= low))
+        pairs = some[KDTree(vertices[some]).query_pairs(float(reach), output_type="ndarray")]
+        apart = np.linalg.norm(np.diff(vertices[pairs].astype(np.float64), axis=1)[:, 0], axis=1)
+        found.append(pairs[apart <= ulps[pairs].max(axis=1)])
+    one, other = np.concatenate(found).T
     return components(len(vertices), one, other)
 
 
