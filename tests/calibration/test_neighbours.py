@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from eigenfield.calibration import measure_neighbours
-from eigenfield.calibration.neighbours import epipolar_matches, neighbours_of
+from eigenfield.calibration.neighbours import epipolar_matches, nearest_pairs, neighbours_of
 from eigenfield.capture import open_any
 from eigenfield.imaging.png import png_bytes
 from support.captures import write_capture
@@ -54,6 +54,15 @@ def test_neighbours_are_the_nearest_cameras(tmp_path):
     capture = open_any(write_capture(tmp_path / "c"))
     pairs = neighbours_of(capture, range(9))
     assert all(abs(a - b) in (1, 3) for a, b in pairs) and {i for pair in pairs for i in pair} == set(range(9))
+
+
+def test_shots_from_one_place_are_no_neighbours():
+    line = np.stack([np.linspace(-1.2, 1.2, 9), np.zeros(9)], axis=1)
+    shots = np.repeat(line, 3, axis=0) + 0.002 * (np.arange(27) % 3)[:, None]
+    assert {(j - i, i % 3) for i, j in nearest_pairs(shots)} == {(3, 0)}
+    dense = np.stack([np.linspace(0, 1, 300), np.zeros(300)], axis=1)  # steps of 0.3 % of its length
+    assert {j - i for i, j in nearest_pairs(dense)} == {1}
+    assert nearest_pairs(np.zeros((3, 3)))  # all in one place are still looked at
 
 
 def test_what_shows_nothing_in_common_is_no_pair(tmp_path):

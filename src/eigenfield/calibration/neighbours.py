@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import Any
 
 import cv2
 import numpy as np
@@ -24,6 +25,8 @@ from eigenfield.imaging.metrics import to_codes
 from eigenfield.runtime.parallel import parallel_map, tracked_map
 
 NEIGHBOUR_MAX_PARALLAX_RATIO = 0.03  # of the longer side, up to which views between were drawn well: docs/captures.md
+NEIGHBOUR_PLACE_RATIO = 0.01  # of the array's extent, within which photographs are of one place
+NEIGHBOUR_PLACE_STEPS = 0.25  # likewise, of the step if all stood along a line, which is less where they are many
 
 
 # Constants of `measure_neighbours`.
@@ -88,6 +91,8 @@ def measure_neighbours(capture: Capture, sound: Sequence[int], progress: Progres
 def neighbours_of(capture: Capture, sound: Sequence[int]) -> list[tuple[int, int]]:
     """Each photograph with its nearest, by cameras or the places of a grid; without either with the next by name.
 
+    Of photographs from one place, the first alone takes part.
+
     Args:
         sound: Indices of those that take part.
     """
@@ -102,16 +107,33 @@ def neighbours_of(capture: Capture, sound: Sequence[int]) -> list[tuple[int, int
     return [(sound[i], sound[j]) for i, j in nearest_pairs(places)]
 
 
+def first_of_place(places: NDArray[np.float64]) -> NDArray[np.int64]:
+    """(n,) of each photograph the first from its place, which is itself where no other is: two shots are one place.
+
+    Args:
+        places: (n, 2) or (n, 3).
+    """
+    extent = float(np.linalg.norm(np.ptp(places, axis=0)))
+    first = np.arange(len(places))
+    if extent > 0:
+        reach = extent * min(NEIGHBOUR_PLACE_RATIO, NEIGHBOUR_PLACE_STEPS / (len(places) - 1))
+        around: Any = KDTree(places).query_ball_point(places, reach)
+        for index, near in enumerate(around):
+            first[index] = min(other for other in near if first[other] == other)
+    return first
+
+
 def nearest_pairs(places: NDArray[np.float64]) -> list[tuple[int, int]]:
-    """Each place with its nearest, every pair once.
+    """Each place with its nearest, every pair once, by the first photograph of each.
 
     Args:
         places: (n, 2) or (n, 3), two or more.
     """
-    nearest = np.asarray(KDTree(places).query(places, k=2)[1])
-    # of cameras in one place, either may come first
-    other = np.where(nearest[:, 0] == np.arange(len(places)), nearest[:, 1], nearest[:, 0])
-    return sorted({(min(i, int(j)), max(i, int(j))) for i, j in enumerate(other)})
+    kept = np.unique(first_of_place(places))
+    nearest = np.asarray(KDTree(places[kept]).query(places[kept], k=2)[1])
+    # where all are in one place, either may come first
+    other = np.where(nearest[:, 0] == np.arange(len(kept)), nearest[:, 1], nearest[:, 0])
+    return sorted({(min(i, j), max(i, j)) for i, j in zip(kept.tolist(), kept[other].tolist(), strict=True)})
 
 
 def spread_pairs(pairs: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:

@@ -38,6 +38,7 @@ from eigenfield.encoding.left_out import (
     interpolation,
     is_sparse,
     others_around,
+    places_of,
     spread_inside,
 )
 from eigenfield.encoding.plan import EncodePlan
@@ -108,10 +109,11 @@ def _drawn(
 
 
 def _weights_of_others(scene: Scene, camera: int) -> ViewWeights:
-    """What an encoded camera's place takes of the others."""
+    """What an encoded camera's place takes of those of others."""
     rig = scene.rig
-    others = np.flatnonzero(rig.encoded != camera)
-    row = interpolation(rig, others.tolist(), [int(np.searchsorted(rig.encoded, camera))])[0]
+    place, index = places_of(rig), int(np.searchsorted(rig.encoded, camera))
+    others = np.flatnonzero(place != place[index])
+    row = interpolation(rig, others.tolist(), [index])[0]
     return ViewWeights(scene.rows(rig.encoded[others[row != 0]]), row[row != 0])
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from eigenfield.calibration.neighbours import (
     NEIGHBOUR_MAX_PARALLAX_RATIO,
+    first_of_place,
     fit_similarity,
     nearest_pairs,
     parallax_beside,
@@ -23,7 +24,7 @@ from eigenfield.rendering import delaunay_triangles
 from eigenfield.rendering.weights import delaunay_weights, hull
 from eigenfield.runtime.parallel import parallel_map
 
-BETWEEN_MIN_CAMERAS = 5  # encoded ones, of which some can be left out
+BETWEEN_MIN_PLACES = 5  # of encoded cameras, of which some can be left out
 BETWEEN_FEW_CAMERAS = 49  # of more the finished scene tells enough, unless they are far apart
 BETWEEN_PARALLAX_SIDE_PIXELS = 64  # longer side of the view in which points are taken to see how far that is
 BETWEEN_MIN_SIDE_PIXELS = 128  # of smaller photographs the short way says far too little
@@ -31,10 +32,10 @@ BETWEEN_LEFT_OUT_RATIO, BETWEEN_MAX_LEFT_OUT = 1 / 4, 12  # of the cameras, at m
 
 
 def has_scores(plan: EncodePlan) -> bool:
-    """Whether a scene of a plan gets scores: one of five cameras or more, whose pictures are not tiny."""
+    """Whether a scene of a plan gets scores: one from five places or more, whose pictures are not tiny."""
     cameras = plan.views.rig.encoded_cameras
     large = min(min(camera.width, camera.height) for camera in cameras) >= BETWEEN_MIN_SIDE_PIXELS
-    return large and len(cameras) >= BETWEEN_MIN_CAMERAS
+    return large and len(np.unique(places_of(plan.views.rig))) >= BETWEEN_MIN_PLACES
 
 
 def is_sparse(plan: EncodePlan) -> bool:
@@ -70,11 +71,14 @@ def neighbour_parallax(cameras: Sequence[Camera], proxy: Proxy) -> float:
 def spread_inside(rig: Rig) -> list[int]:
     """Cameras to leave out, counted among the encoded ones: inside their hull if any are, and no two are neighbours.
 
-    The rig has at least BETWEEN_MIN_CAMERAS encoded cameras.
+    With a camera goes each other of its place: a twin would draw what it shows.
+
+    The rig has cameras at BETWEEN_MIN_PLACES at least.
     """
-    near = _neighbours(rig)
-    rim = set(hull(rig.triangles).ravel().tolist()) or {index for index, ones in enumerate(near) if len(ones) < 2}
-    joined = [index for index, ones in enumerate(near) if ones]  # another camera may stand in the same place
+    place = places_of(rig)
+    near = _neighbours(rig, place)
+    rim = set(place[hull(rig.triangles)].ravel().tolist()) or {index for index, ones in near.items() if len(ones) < 2}
+    joined = [index for index, ones in near.items() if ones]
     inner = [index for index in joined if index not in rim] or joined
     gaps = _gaps(rig)
     most = min(max(1, int(len(near) * BETWEEN_LEFT_OUT_RATIO)), BETWEEN_MAX_LEFT_OUT)
@@ -82,7 +86,12 @@ def spread_inside(rig: Rig) -> list[int]:
     for index in sorted(inner, key=lambda i: -max(gaps[i, j] for j in near[i])):
         if not near[index] & set(chosen) and len(chosen) < most:
             chosen.append(index)
-    return sorted(chosen)
+    return np.flatnonzero(np.isin(place, chosen)).tolist()
+
+
+def places_of(rig: Rig) -> NDArray[np.int64]:
+    """(Ne,) of each encoded camera the first of its place (`first_of_place`)."""
+    return first_of_place(np.array([camera.centre for camera in rig.encoded_cameras]))
 
 
 def _gaps(rig: Rig) -> NDArray[np.float64]:
@@ -91,22 +100,29 @@ def _gaps(rig: Rig) -> NDArray[np.float64]:
     return np.asarray(np.linalg.norm(centres[:, None] - centres, axis=2))
 
 
-def _neighbours(rig: Rig) -> list[set[int]]:
-    """Of each encoded camera, those with which it has an edge; on a line the nearest along it."""
-    near: list[set[int]] = [set() for _ in rig.encoded]
+def _neighbours(rig: Rig, place: NDArray[np.int64]) -> dict[int, set[int]]:
+    """Of each place, in order, those with which it has an edge; on a line the nearest along it.
+
+    Args:
+        place: Of `places_of`.
+    """
+    near: dict[int, set[int]] = {index: set() for index in np.unique(place).tolist()}
     pairs = rig.triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2)
     if not len(pairs):
         places = rig.view_plane.coordinates([camera.centre for camera in rig.encoded_cameras])
         order = np.lexsort((places[:, 1], places[:, 0]))
         pairs = np.stack([order[:-1], order[1:]], axis=1)
-    for a, b in pairs.tolist():
-        near[a].add(b)
-        near[b].add(a)
+    for a, b in place[pairs].tolist():
+        if a != b:
+            near[a].add(b)
+            near[b].add(a)
     return near
 
 
 def farthest_neighbour(rig: Rig, index: int) -> int:
-    return max(sorted(_neighbours(rig)[index]), key=lambda other: float(_gaps(rig)[index, other]))
+    """The encoded camera, of those at the places beside, that is farthest from one."""
+    place, gaps = places_of(rig), _gaps(rig)
+    return max(sorted(_neighbours(rig, place)[int(place[index])]), key=lambda other: float(gaps[index, other]))
 
 
 def others_around(rig: Rig, left_out: Sequence[int]) -> set[int]:
@@ -120,8 +136,10 @@ def others_around(rig: Rig, left_out: Sequence[int]) -> set[int]:
     if len(rig.encoded) <= BETWEEN_FEW_CAMERAS:
         taken = set(range(len(rig.encoded)))
     else:
-        near = _neighbours(rig)
-        taken = set().union(*(near[index] for index in left_out)) | {rig.encoded_reference}
+        place = places_of(rig)
+        near = _neighbours(rig, place)
+        around = set().union(*(near[index] for index in set(place[list(left_out)].tolist())))
+        taken = set(np.flatnonzero(np.isin(place, list(around))).tolist()) | {rig.encoded_reference}
     return taken - set(left_out)
 
 
