@@ -206,6 +206,7 @@ def test_the_sums_of_a_camera_are_those_of_its_derivatives():
     y, x = np.mgrid[:40, :50]
     waves = [np.sin(0.3 * x + c) + np.cos(0.2 * y - c) for c in range(4)]
     picture = np.clip(128 + 40 * np.stack(waves, axis=-1), 0, 255).astype(np.uint8)
+    picture[..., 3] = 0
     points = random.uniform((5, 5, -1), (40, 30, 1), (200, 3)).astype(np.float32)
     colours = random.uniform(60, 200, (200, 3)).astype(np.float32)
     matrix = np.array([[1, 0.02, 1.5, 1], [0.01, 1, -1, 2], [1e-4, 1e-4, 1e-2, 1]])
@@ -239,3 +240,11 @@ def test_the_sums_of_a_camera_are_those_of_its_derivatives():
     assert_allclose(
         np.einsum("pik,ik->p", derivatives, right), np.einsum("nc,nc,nck->k", weights, error, rows), rtol=1e-3
     )
+
+    picture[:, :12, 3] = picture[:, 42:, 3] = picture[:9, :, 3] = picture[33:, :, 3] = (
+        255  # outside a smaller photograph
+    )
+    _, seen = normal_equations(
+        picture, points, colours, matrix, np.full((40, 50), -9, np.float32), 0.5, 15.0, left, right
+    )
+    assert 0 < seen == ((at >= (14, 11)) & (at < (39, 30))).all(axis=1).sum() < 200

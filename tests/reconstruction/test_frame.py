@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,9 +12,20 @@ from PIL import Image
 from eigenfield.capture import open_any, open_capture
 from eigenfield.capture.photographs.colour import encode_srgb
 from eigenfield.imaging.colour import linear_of_srgb
-from eigenfield.reconstruction.frame import has_masks, read_masks, read_pictures
+from eigenfield.reconstruction.frame import (
+    common_frame,
+    frame_places,
+    full_size_cameras,
+    has_masks,
+    read_depth_pictures,
+    read_masks,
+    read_pictures,
+    resized_cameras,
+    shown_pixels,
+)
 from eigenfield.reconstruction.layered import capture_fault
-from support.captures import frame_of, write_array
+from eigenfield.stereo.views import codes_of, inside_pictures
+from support.captures import frame_of, write_array, write_capture
 from support.scenes import row_grid
 
 
@@ -78,3 +90,36 @@ def test_photographs_that_cannot_hide_anything_are_not_decoded(photos):
     path = min(photos.iterdir())
     path.write_bytes(path.read_bytes()[:200])
     assert not has_masks(open_any(photos))
+
+
+@pytest.fixture
+def mixed(tmp_path):
+    """Cameras that lie and stand in turn."""
+    cameras = [
+        camera if index % 2 else replace(camera, K=camera.K[[1, 0, 2]][:, [1, 0, 2]], width=40, height=48)
+        for index, camera in enumerate(row_grid(4))
+    ]
+    return open_any(write_capture(tmp_path / "mixed", tuple(cameras)))
+
+
+@pytest.mark.parametrize("pixels", [1e9, 4 * 24**2])
+def test_photographs_lie_in_the_middle_of_their_frame_with_their_cameras(mixed, monkeypatch, pixels):
+    monkeypatch.setattr("eigenfield.reconstruction.frame.FRAME_MAX_TOTAL_PIXELS", pixels)
+    small = common_frame(mixed)[1]
+    assert common_frame(mixed)[0] == (48, 48) and small[0] in (48, 24)
+    pictures, places = read_depth_pictures(mixed), frame_places(mixed)
+    for index, (place, camera) in enumerate(zip(places, resized_cameras(mixed), strict=True)):
+        assert [part.stop - part.start for part in place] == [
+            side * small[0] // 48 for side in mixed.sizes[index][::-1]
+        ]
+        around = (48 - np.array(mixed.sizes[index])) / 2
+        assert camera.K[:2, 2] == pytest.approx((mixed.cameras[index].K[:2, 2] + around) * small[0] / 48)
+        if small[0] == 48:
+            shown = np.rint(mixed.photograph(index).pixels * 255)
+            assert np.array_equal(codes_of(pictures)[index][place], shown)
+    inside = np.zeros((4, *small), np.bool_)
+    for one, place in zip(inside, places, strict=True):
+        one[place] = True
+    assert np.array_equal(inside_pictures(pictures), inside) and np.array_equal(shown_pixels(mixed), inside)
+    for camera, again in zip(mixed.cameras, full_size_cameras(mixed, resized_cameras(mixed)), strict=True):
+        assert np.allclose(camera.K, again.K) and (camera.width, camera.height) == (again.width, again.height)

@@ -19,7 +19,9 @@ from eigenfield.proxy import atlas_fault
 from eigenfield.reconstruction.layers import compare_held_out, draw_means, fit_views, layers_fault
 from eigenfield.reconstruction.whole import reconstruct
 from eigenfield.stereo import view_matrices
+from eigenfield.stereo.views import mark_outside
 from support.captures import write_array
+from support.planes import cropped
 
 pytestmark = pytest.mark.slow
 
@@ -167,6 +169,17 @@ def test_views_left_out_tell_a_right_surface_from_a_wrong_one():
     (sheets,), right = compare_held_out(pictures, cameras, (0.2, 0.3), wall(4.0), counts=[2])
     assert min(sheets, right) > 34
     assert compare_held_out(pictures, cameras, (0.2, 0.3), wall(6.0), counts=[2])[1] < right - 6
+
+
+def test_photographs_lying_and_upright_are_judged_by_what_they_show():
+    cameras = ring(6, 4)
+    places = [(slice(0, 48), slice(10, 54)) if index % 2 else (slice(4, 44), slice(0, 64)) for index in range(6)]
+    smeared = cropped(wall_pictures(cameras), places)
+    marked = mark_outside(smeared, places)
+    (sheets,), right = compare_held_out(marked, cameras, (0.2, 0.3), wall(4.0), counts=[2])
+    assert min(sheets, right) > 32
+    (blurred,), wrong = compare_held_out(smeared, cameras, (0.2, 0.3), wall(4.0), counts=[2])
+    assert max(blurred, wrong) < 26
 
 
 def test_more_sheets_are_not_tried_where_the_fewest_are_far_from_enough():

@@ -22,6 +22,7 @@ from eigenfield.reconstruction.array import looks_one_way
 from eigenfield.reconstruction.whole import reconstruct
 from support.captures import write_array
 from support.motion import photographed
+from support.planes import everywhere, lying_and_upright, paint, photograph
 
 
 @pytest.fixture(scope="module")
@@ -103,6 +104,30 @@ def test_a_photograph_of_another_scene_is_named_and_left_out(photos, tmp_path):
     assert foreign.name not in result.light_field.names
     assert len(result.light_field) == 15
     assert any(foreign.name in problem for problem in result.light_field.problems)
+
+
+def test_photographs_lying_and_upright_give_the_depth_that_is_there(tmp_path):
+    """A square of depth 2 before a wall of depth 3.2, by cameras 0.1 apart."""
+    steps, side = [(0, 0), *((x, y) for y in (-1, 1) for x in (-1, 0, 1))], 128
+    matrices = np.array([[[1, 0, -x, 0], [0, 1, -y, 0], [0, 0, 0, 1]] for x, y in steps], float)
+
+    def near(x, y):
+        return (abs(x - 60) < 22) & (abs(y - 64) < 26)
+
+    pictures = photograph([(6.4, 0, 0, paint(1), near), (4.0, 0, 0, paint(2), everywhere)], matrices, side)
+    frames = []
+    for index, (place, (x, y)) in enumerate(zip(lying_and_upright(len(steps), side, 96), steps, strict=True)):
+        Image.fromarray(pictures[index][place]).save(tmp_path / f"{index}.png")
+        camera = {"fl_x": 128, "fl_y": 128, "cx": 64 - place[1].start, "cy": 64 - place[0].start}
+        world = [[1, 0, 0, 0.1 * x], [0, 1, 0, -0.1 * y], [0, 0, 1, 0], [0, 0, 0, 1]]
+        frames.append({"file_path": f"{index}.png", "transform_matrix": world, **camera})
+    (tmp_path / "transforms.json").write_text(json.dumps({"frames": frames}))
+    result = reconstruct(open_any(tmp_path), layers=1)
+    assert len(result.light_field) == len(steps) and not result.light_field.problems
+    inverse = rasterise_view(result.proxy.mesh, result.light_field.cameras[0]).inverse_depth
+    row, column = np.indices(inverse.shape)
+    truth = 1 / np.where(near(column, row + 16), 2.0, 3.2)
+    assert (np.abs(inverse / truth - 1) > 0.05).mean() < 0.02
 
 
 def test_options_that_cannot_be(photos):

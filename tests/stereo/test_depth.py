@@ -22,8 +22,15 @@ from eigenfield.stereo.refine import refine_depth
 from eigenfield.stereo.semiglobal import semi_global_matching
 from eigenfield.stereo.smooth import smooth_depth
 from eigenfield.stereo.sweep import plane_sweep
-from eigenfield.stereo.views import halve_pictures, halved_matrices, pack_pictures, unpack_pictures
-from support.planes import everywhere, paint, photograph
+from eigenfield.stereo.views import (
+    halve_pictures,
+    halved_matrices,
+    inside_pictures,
+    mark_outside,
+    pack_pictures,
+    unpack_pictures,
+)
+from support.planes import cropped, everywhere, lying_and_upright, paint, photograph
 
 SIDE = 96
 GRID = 5
@@ -241,6 +248,25 @@ def test_estimate_with_turned_cameras_and_a_widened_reference_view():
     error = np.abs(depth - truth)
     assert (error[8:-8, 8:-8] > 0.1).mean() < 0.03
     assert np.median(error) < 0.03 and np.isfinite(depth).all()
+
+
+def test_what_photographs_do_not_reach_is_not_taken_for_seen(two_layers):
+    pictures, truth = two_layers
+    places = lying_and_upright(GRID**2, SIDE, 72)
+    smeared = cropped(pictures, places)
+    marked = mark_outside(smeared, places)
+    assert mark_outside(smeared, [(slice(0, SIDE),) * 2] * GRID**2) is smeared
+
+    def wrong(given):
+        depth = estimate_depth(given, grid_matrices(), (SIDE, SIDE), (-2.0, 2.5), rounds=2)
+        seen = np.s_[14:-14, 6:-6]  # where the reference camera's own photograph is
+        return (np.abs(depth - truth)[seen] > 0.1).mean()
+
+    assert wrong(marked) < 0.03 < 0.1 < wrong(smeared)
+    _, count = mean_texture(marked, grid_matrices(), np.zeros((SIDE, SIDE), np.float32))
+    assert count[5, 5] == 0 and count[5, 48] == 12 and count[48, 5] == 13 and count[48, 48] == 25
+    assert np.array_equal(inside_pictures(halve_pictures(marked)), inside_pictures(marked)[:, ::2, ::2])
+    assert np.array_equal(inside_pictures(detail_pictures(marked)), inside_pictures(marked))
 
 
 def turned_cameras() -> list[Camera]:

@@ -7,7 +7,8 @@ import pytest
 
 from eigenfield.runtime.parallel import set_threads
 from eigenfield.stereo.patches import OtherMaps, match_patches, upsample_planes
-from support.planes import everywhere, paint, photograph
+from eigenfield.stereo.views import mark_outside
+from support.planes import cropped, everywhere, paint, photograph
 
 SIDE = 96
 PLACES = [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1)]
@@ -48,6 +49,14 @@ def test_exposure_has_no_effect(slanted):
     others = np.rint(pictures * gains + 10).astype(np.uint8)
     off = np.abs(labels(match_patches(others, matrices(), (SIDE, SIDE), 16.0)[0]) - truth)[8:-8, 8:-8]
     assert np.median(off) < 0.15 and (off < 0.5).mean() > 0.95
+
+
+def test_smaller_views_have_no_say_beyond_their_end(slanted):
+    pictures, truth = slanted
+    places = [(slice(0, SIDE), slice(0, SIDE - 36 * (view % 2))) for view in range(len(PLACES))]
+    marked = mark_outside(cropped(pictures, places), places)
+    off = np.abs(labels(match_patches(marked, matrices(), (SIDE, SIDE), 16.0)[0]) - truth)[8:-8, 8:-8]
+    assert np.median(off) < 0.15 and (off < 0.5).mean() > 0.99
 
 
 def test_plain_paint_continues_the_plane_around_it():

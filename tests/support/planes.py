@@ -47,5 +47,20 @@ def photograph(layers: list, matrices: np.ndarray, side: int) -> np.ndarray:
     return result
 
 
+def cropped(pictures: np.ndarray, places: list[tuple[slice, slice]]) -> np.ndarray:
+    """Photographs that show only these rows and columns: their edges go on beyond them."""
+    parts = []
+    for picture, (rows, columns) in zip(pictures, places, strict=True):
+        around = [(part.start, side - part.stop) for part, side in zip((rows, columns), picture.shape, strict=False)]
+        parts.append(np.pad(picture[rows, columns], (*around, (0, 0)), mode="edge"))
+    return np.stack(parts)
+
+
+def lying_and_upright(count: int, side: int, short: int) -> list[tuple[slice, slice]]:
+    """Rows and columns of `count` photographs in the middle of a square: every second one is upright."""
+    whole, part = slice(0, side), slice((side - short) // 2, (side + short) // 2)
+    return [(whole, part) if index % 2 else (part, whole) for index in range(count)]
+
+
 def everywhere(x: np.ndarray, y: np.ndarray) -> np.ndarray:
     return np.ones(x.shape, bool)

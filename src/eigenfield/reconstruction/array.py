@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +21,7 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.viewplane import fit_view_plane
 from eigenfield.proxy import estimate_second_layer, read_mesh, relief_mesh, write_ply
 from eigenfield.proxy.surface.neighbours import project_inside
-from eigenfield.reconstruction.frame import common_frame, read_masks, read_pictures, resized_cameras
+from eigenfield.reconstruction.frame import full_size_cameras, read_depth_pictures, read_masks, resized_cameras
 from eigenfield.reconstruction.options import SurfaceOptions
 from eigenfield.reconstruction.run import StageRunner
 from eigenfield.reconstruction.stage_files import (
@@ -37,6 +37,7 @@ from eigenfield.reconstruction.stage_files import (
 from eigenfield.stereo import depth_buffers, depth_range, mean_texture
 from eigenfield.stereo.discontinuities import find_discontinuities
 from eigenfield.stereo.extend import remove_speckles
+from eigenfield.stereo.views import Pictures, codes_of
 
 log = logging.getLogger("eigenfield.reconstruction")
 
@@ -119,7 +120,7 @@ def align_array(
     inputs = [refine, known.tolist(), None if points is None else len(points)]
 
     def build(folder: Path) -> None:
-        pictures = read_pictures(capture)
+        pictures = read_depth_pictures(capture)
         part = capture.subset(known)
         shown = pictures if len(known) == len(pictures) else pictures[known]
         start = _start_array(part, shown, points)
@@ -144,7 +145,7 @@ def relief_of_array(run: StageRunner, capture: Capture, array: AlignedArray) -> 
     """The layered relief of an array, with an atlas."""
 
     def build(folder: Path) -> None:
-        pictures = read_pictures(capture)
+        pictures = read_depth_pictures(capture)
         masks = read_masks(capture)
         depth, keep = array.depth(), array.shown
         shown = None if masks is None else masks[keep]
@@ -171,8 +172,8 @@ def array_depths(array: AlignedArray) -> tuple[float, float]:
 def _layered_relief(
     run: StageRunner,
     depth: ArrayDepth,
-    pictures: NDArray[np.uint8],
-    masks: NDArray[np.uint8] | None,
+    pictures: Pictures,
+    masks: Pictures | None,
     matrices: NDArray[np.float64],
     cameras: Sequence[Camera],
 ) -> Mesh:
@@ -201,7 +202,7 @@ def _layered_relief(
     return mesh
 
 
-def _inside_masks(masks: NDArray[np.uint8], matrices: NDArray[np.float64], depth: ArrayDepth) -> NDArray[np.bool_]:
+def _inside_masks(masks: Pictures, matrices: NDArray[np.float64], depth: ArrayDepth) -> NDArray[np.bool_]:
     """Where most of the views that see a point have it inside their masks."""
     buffers = depth_buffers(matrices, depth.d, masks.shape[1:3])
     share, _ = mean_texture(masks, matrices, depth.d, buffers)
@@ -221,11 +222,11 @@ def _must_refine(capture: Capture, settings: SurfaceOptions) -> bool:
     return capture.light_field is None or len(capture) >= ARRAY_DENSE_VIEWS
 
 
-def _start_array(capture: Capture, pictures: NDArray[np.uint8], points: NDArray[np.float64] | None) -> PlanarStart:
+def _start_array(capture: Capture, pictures: Pictures, points: NDArray[np.float64] | None) -> PlanarStart:
     if capture.light_field is None:
         assert capture.layout is not None
         try:
-            return start_planar(pictures, capture.layout, capture.names)
+            return start_planar(codes_of(pictures), capture.layout, capture.names)
         except CaptureError as error:  # it does not know the path
             raise CaptureError(error.code, error.message, path=capture.root, remedy=error.remedy) from None
     cameras = resized_cameras(capture)
@@ -254,22 +255,18 @@ def _light_field(capture: Capture, planar: PlanarArray) -> LightField:
         for i in np.flatnonzero(is_outlier)
     ]
     keep = [int(i) for i in np.flatnonzero(~is_outlier)]
-    whole, small = common_frame(capture)
-    full_size = []
-    for index in keep:
-        K = np.diag([whole[0] / small[0], whole[1] / small[1], 1.0]) @ cameras[index].K
-        full_size.append(replace(cameras[index], K=K, width=capture.sizes[index][0], height=capture.sizes[index][1]))
-    return capture.subset(keep).with_cameras(full_size, problems=problems)
+    full_size = full_size_cameras(capture, cameras)
+    return capture.subset(keep).with_cameras([full_size[index] for index in keep], problems=problems)
 
 
 def inverse_depths(
-    capture: LightField, cameras: Sequence[Camera], pictures: NDArray[np.uint8], points: NDArray[np.float64] | None
+    capture: LightField, cameras: Sequence[Camera], pictures: Pictures, points: NDArray[np.float64] | None
 ) -> tuple[float, float]:
     """The range of inverse depths seen from the central camera, 1 / world unit.
 
     Args:
         cameras: Their cameras, at the size of the pictures.
-        pictures: (n, H, W, 3) the photographs.
+        pictures: (n, H, W, 3) the photographs, or packed.
         points: (n, 3) points of structure from motion, if any.
     """
     plane = fit_view_plane(cameras)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -20,6 +21,7 @@ from eigenfield.core.camera import Camera
 from eigenfield.core.observations import Photograph
 from eigenfield.imaging.colour import linear_of_srgb
 from eigenfield.runtime.parallel import parallel_map, parallel_stream
+from eigenfield.stereo.views import Pictures, codes_of, mark_outside
 
 FRAME_MAX_TOTAL_PIXELS = 120_000_000  # of all photographs together; larger captures are reduced for depth estimation
 FRAME_EXPOSURE_QUANTILE = 0.75  # of all photographs' brightness, which the others get: dark ones lose less than bright
@@ -35,11 +37,28 @@ def common_frame(capture: Capture) -> tuple[tuple[int, int], tuple[int, int]]:
     return (width, height), (max(2, round(scale * width)), max(2, round(scale * height)))
 
 
+def _corner(size: tuple[int, int], whole: tuple[int, int]) -> tuple[int, int]:
+    """(x, y) in the frame at which a photograph begins: it lies in the middle."""
+    return (whole[0] - size[0]) // 2, (whole[1] - size[1]) // 2
+
+
+def frame_places(capture: Capture) -> list[tuple[slice, slice]]:
+    """Rows and columns of each photograph in the common frame, reduced, with those that it fills in part."""
+    whole, small = common_frame(capture)
+
+    def place(begin: int, size: int, axis: int) -> slice:
+        return slice(begin * small[axis] // whole[axis], -(-(begin + size) * small[axis] // whole[axis]))
+
+    corners = [_corner(size, whole) for size in capture.sizes]
+    return [(place(y, size[1], 1), place(x, size[0], 0)) for (x, y), size in zip(corners, capture.sizes, strict=True)]
+
+
 def _fit_to_frame(picture: NDArray[Any], whole: tuple[int, int], small: tuple[int, int]) -> NDArray[np.uint8]:
-    """A photograph in the common frame (those of one camera may differ by a row or two), reduced."""
-    missing = whole[1] - picture.shape[0], whole[0] - picture.shape[1]
-    if any(missing):
-        sides = ((0, missing[0]), (0, missing[1]), (0, 0))[: picture.ndim]
+    """A photograph in the middle of the common frame, to which its edges go on, reduced."""
+    height, width = picture.shape[:2]
+    if (width, height) != whole:
+        left, top = _corner((width, height), whole)
+        sides = ((top, whole[1] - height - top), (left, whole[0] - width - left), (0, 0))[: picture.ndim]
         picture = np.pad(picture, sides, mode="edge")
     if small != whole:
         picture = cv2.resize(picture, small, interpolation=cv2.INTER_AREA)
@@ -49,7 +68,8 @@ def _fit_to_frame(picture: NDArray[Any], whole: tuple[int, int], small: tuple[in
 def read_pictures(capture: Capture) -> NDArray[np.uint8]:
     """(n, H, W, 3) uint8 photographs without lens distortion, in their common frame and about one exposure.
 
-    The cameras look about one way and show about the same. So exposures follow from the photographs' medians.
+    The edges of those smaller than the frame go on beyond them (`read_depth_pictures`). The cameras look about one way
+    and show about the same. So exposures follow from the photographs' medians.
     """
     whole, small = common_frame(capture)
     result = np.empty((len(capture), small[1], small[0], 3), np.uint8)
@@ -58,16 +78,25 @@ def read_pictures(capture: Capture) -> NDArray[np.uint8]:
         result[index] = _fit_to_frame(np.rint(capture.photograph(index).pixels * 255).astype(np.uint8), whole, small)
 
     parallel_map(fill, range(len(capture)))
-    _level_exposures(result)
+    _level_exposures(result, frame_places(capture))
     return result
 
 
-def _level_exposures(pictures: NDArray[np.uint8]) -> None:
+def read_depth_pictures(capture: Capture) -> Pictures:
+    """As `read_pictures`, for the depth search: packed, if any photograph is smaller than the frame."""
+    return mark_outside(read_pictures(capture), frame_places(capture))
+
+
+def _level_exposures(pictures: NDArray[np.uint8], places: Sequence[tuple[slice, slice]]) -> None:
     """Bring photographs whose exposure is far from the others' to theirs, in place.
 
     A few are exceptions: they stay as they are, so that an array leaves them out.
+
+    Args:
+        places: Of `frame_places`.
     """
-    green = np.array([np.median(picture[::2, ::2, 1]) for picture in pictures])
+    shown = (picture[place][::2, ::2, 1] for picture, place in zip(pictures, places, strict=True))
+    green = np.array([np.median(codes) for codes in shown])
     stops = np.log2(linear_of_srgb(np.maximum(green, FRAME_DARKEST_CODE) / 255))
     lacking = np.quantile(stops, FRAME_EXPOSURE_QUANTILE) - stops
     far = np.abs(lacking) > HARM_EXPOSURE_STOPS
@@ -79,8 +108,8 @@ def _level_exposures(pictures: NDArray[np.uint8]) -> None:
         pictures[index] = np.rint(codes * 255).astype(np.uint8)[pictures[index]]
 
 
-def filled_pictures(capture: Capture) -> NDArray[np.uint8]:
-    """As `read_pictures`, with the nearest pixel in the border that the removal of a lens leaves empty."""
+def filled_pictures(capture: Capture) -> Pictures:
+    """As `read_depth_pictures`, with the nearest pixel in the border that the removal of a lens leaves empty."""
     whole, small = common_frame(capture)
     result = read_pictures(capture)
 
@@ -92,7 +121,7 @@ def filled_pictures(capture: Capture) -> NDArray[np.uint8]:
             result[index] = result[index][row, column]
 
     parallel_map(fill, range(len(capture)))
-    return result
+    return mark_outside(result, frame_places(capture))
 
 
 def has_masks(capture: Capture, most: int | None = None) -> bool:
@@ -121,8 +150,11 @@ def _own_mask(capture: Capture, index: int) -> NDArray[np.float32] | None:
     return Photograph.of(*decode_with_mask(source, *capture.sizes[index])).mask
 
 
-def read_masks(capture: Capture) -> NDArray[np.uint8] | None:
-    """(n, H, W, 3) uint8 masks of the photographs, 255 where they are valid; None where they hide nothing."""
+def read_masks(capture: Capture) -> Pictures | None:
+    """(n, H, W, 3) uint8 masks of the photographs, 255 where they are valid; None where they hide nothing.
+
+    What lies outside a photograph smaller than the frame is no mask: packed ones say it as `read_depth_pictures` does.
+    """
     whole, small = common_frame(capture)
     result = np.full((len(capture), small[1], small[0], 3), 255, np.uint8)
 
@@ -135,11 +167,45 @@ def read_masks(capture: Capture) -> NDArray[np.uint8] | None:
         result[index] = _fit_to_frame(np.rint(mask * 255).astype(np.uint8), whole, small)[..., None]
         return True
 
-    return result if any(parallel_map(fill, range(len(capture)))) else None
+    return mark_outside(result, frame_places(capture)) if any(parallel_map(fill, range(len(capture)))) else None
+
+
+def shown_pixels(capture: Capture) -> NDArray[np.bool_] | None:
+    """(n, H, W) the pixels of photographs that lie inside their masks; None: all of the frame do."""
+    masks = read_masks(capture)
+    if masks is None and len(set(capture.sizes)) == 1:
+        return None
+    shown = np.zeros((len(capture), *common_frame(capture)[1][::-1]), np.bool_)
+    for index, place in enumerate(frame_places(capture)):
+        shown[index][place] = True
+    if masks is not None:
+        shown &= codes_of(masks)[..., 0] > 127
+    return shown
 
 
 def resized_cameras(capture: LightField) -> list[Camera]:
     """The cameras in the common frame of `read_pictures`."""
     whole, small = common_frame(capture)
     scale = np.diag([small[0] / whole[0], small[1] / whole[1], 1.0])
-    return [replace(camera, K=scale @ camera.K, width=small[0], height=small[1]) for camera in capture.cameras]
+    return [
+        replace(camera, K=scale @ _moved(camera.K, _corner(size, whole)), width=small[0], height=small[1])
+        for camera, size in zip(capture.cameras, capture.sizes, strict=True)
+    ]
+
+
+def full_size_cameras(capture: Capture, cameras: Sequence[Camera]) -> list[Camera]:
+    """The cameras of photographs at their own sizes, from those in the common frame."""
+    whole, small = common_frame(capture)
+    scale = np.diag([whole[0] / small[0], whole[1] / small[1], 1.0])
+    corners = [_corner(size, whole) for size in capture.sizes]
+    return [
+        replace(camera, K=_moved(scale @ camera.K, (-x, -y)), width=width, height=height)
+        for camera, (x, y), (width, height) in zip(cameras, corners, capture.sizes, strict=True)
+    ]
+
+
+def _moved(K: NDArray[np.float64], by: tuple[int, int]) -> NDArray[np.float64]:
+    """The intrinsics whose principal point lies farther right and down."""
+    moved = K.copy()
+    moved[:2, 2] += by
+    return moved

@@ -33,6 +33,7 @@ from eigenfield.reconstruction.layers import (
 from eigenfield.reconstruction.run import StageRunner
 from eigenfield.reconstruction.stage_files import STAGE_PROXY_FILE, STAGE_TRIAL_FILE, read_proxy, write_proxy
 from eigenfield.reconstruction.unseen import without
+from eigenfield.stereo.views import Pictures
 
 log = logging.getLogger("eigenfield.reconstruction")
 
@@ -96,7 +97,7 @@ class LayerSource:
         known = [None if self.points is None else len(self.points)] if self.array is None else self.array.inputs
         return [known, sorted(self.unseen)]
 
-    def views(self, run: StageRunner) -> tuple[NDArray[np.uint8], list[Camera], Range]:
+    def views(self, run: StageRunner) -> tuple[Pictures, list[Camera], Range]:
         """The photographs that take part, their cameras at the same size, and the range of inverse depths."""
         shown = self.shown
         pictures, cameras = filled_pictures(shown), resized_cameras(shown)

@@ -23,7 +23,7 @@ from eigenfield.proxy import soft_relief
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.stereo import ReferenceView, view_matrices
 from eigenfield.stereo.multiplane import SoftSheets, fit_sheets
-from eigenfield.stereo.views import halve_pictures, label_parallax, unpack_pictures
+from eigenfield.stereo.views import Pictures, codes_of, halve_pictures, inside_pictures, label_parallax
 
 log = logging.getLogger("eigenfield.reconstruction")
 
@@ -70,13 +70,13 @@ def layers_fault(cameras: Sequence[Camera]) -> str | None:
 
 
 def layers_proxy(
-    pictures: NDArray[np.uint8], cameras: Sequence[Camera], bounds: Range, *, count: int, triangles: int,
+    pictures: Pictures, cameras: Sequence[Camera], bounds: Range, *, count: int, triangles: int,
     progress: Progress | None = None,
 ) -> Proxy:  # fmt: skip
     """The proxy of the soft sheets that draw photographs best.
 
     Args:
-        pictures: (V, H, W, 3) uint8 the photographs.
+        pictures: (V, H, W, 3) uint8 the photographs, or packed.
         cameras: V of them, at the same size.
         bounds: Inverse depths of the farthest and the nearest plane.
     """
@@ -91,7 +91,7 @@ def layers_proxy(
 
 
 def fit_views(
-    pictures: NDArray[np.uint8], cameras: Sequence[Camera], bounds: Range, counts: Sequence[int],
+    pictures: Pictures, cameras: Sequence[Camera], bounds: Range, counts: Sequence[int],
     enough: Callable[[ReferenceView, SoftSheets], bool] | None = None, progress: Progress | None = None,
 ) -> tuple[ReferenceView, list[SoftSheets]]:  # fmt: skip
     """The reference view of photographs, and their soft sheets for each of some numbers of sheets.
@@ -116,7 +116,7 @@ def fit_views(
 
 
 def compare_held_out(
-    pictures: NDArray[np.uint8], cameras: Sequence[Camera], bounds: Range, mesh: Mesh | None, *, counts: Sequence[int],
+    pictures: Pictures, cameras: Sequence[Camera], bounds: Range, mesh: Mesh | None, *, counts: Sequence[int],
     min_gain: float = -math.inf, progress: Progress | None = None,
 ) -> tuple[list[float], float]:  # fmt: skip
     """How well sheets and a mesh draw photographs left out: the mean PSNR for each number of sheets, and of the mesh.
@@ -134,20 +134,23 @@ def compare_held_out(
     left_out[LAYERS_TRIAL_STEP // 2 :: LAYERS_TRIAL_STEP] = True
     others, shown = np.flatnonzero(~left_out).tolist(), np.flatnonzero(left_out).tolist()
     known, unknown = [cameras[i] for i in others], [cameras[i] for i in shown]
-    whole = np.ones(pictures.shape[1:3], np.bool_)
-    hard = [(pictures[i], whole) for i in shown] if mesh is None else draw_means(mesh, unknown, pictures[others], known)
-    counted = [(i, mean, covered) for i, (mean, covered) in zip(shown, hard, strict=True) if covered.any()]
+    codes, inside = codes_of(pictures), inside_pictures(pictures)
+    hard = [(codes[i], inside[i]) for i in shown]
+    if mesh is not None:
+        hard = draw_means(mesh, unknown, pictures[others], known)
+    places = ((i, mean, covered & inside[i]) for i, (mean, covered) in zip(shown, hard, strict=True))
+    counted = [(i, mean, seen) for i, mean, seen in places if seen.any()]
     if not counted:
         return [math.inf] * len(counts), -math.inf
-    means = np.array([psnr(mean, pictures[i], seen) for i, mean, seen in counted], np.float64)
+    means = np.array([psnr(mean, codes[i], seen) for i, mean, seen in counted], np.float64)
     of_mesh = -math.inf if mesh is None else float(means.mean())
     scores: list[float] = []
 
     def hopeless(reference: ReferenceView, sheets: SoftSheets) -> bool:
         matrices = view_matrices(reference, [cameras[i] for i, _, _ in counted])
         drawn = (sheets.draw(matrix, pictures.shape[1:3]) for matrix in matrices)
-        codes = (np.rint(np.clip(one, 0, 1) * 255).astype(np.uint8) for one in drawn)
-        figures = [psnr(one, pictures[i], seen) for one, (i, _, seen) in zip(codes, counted, strict=True)]
+        rounded = (np.rint(np.clip(one, 0, 1) * 255).astype(np.uint8) for one in drawn)
+        figures = [psnr(one, codes[i], seen) for one, (i, _, seen) in zip(rounded, counted, strict=True)]
         scores.append(float(np.array(figures, np.float64).mean()))
         return max(scores) + LAYERS_MAX_COUNT_GAIN_DB < of_mesh + min_gain
 
@@ -166,15 +169,17 @@ def best_count(counts: Sequence[int], scores: Sequence[float]) -> int:
 
 
 def draw_means(
-    mesh: Mesh, views: Sequence[Camera], pictures: NDArray[np.uint8], cameras: Sequence[Camera]
+    mesh: Mesh, views: Sequence[Camera], pictures: Pictures, cameras: Sequence[Camera]
 ) -> list[tuple[NDArray[np.uint8], NDArray[np.bool_]]]:
     """Each view of a mesh: (H, W, 3) at every pixel the mean of the photographs that see its point; (H, W) where any.
 
     Args:
-        pictures: (V, H, W, 3) photographs.
+        pictures: (V, H, W, 3) photographs, or packed.
         cameras: V of them.
     """
-    depths = parallel_map(lambda camera: rasterise_view(mesh, camera).inverse_depth, cameras)
+    codes = codes_of(pictures)
+    whole = parallel_map(lambda camera: rasterise_view(mesh, camera).inverse_depth, cameras)
+    depths = [depth * inside for depth, inside in zip(whole, inside_pictures(pictures), strict=True)]
 
     def draw(view: Camera) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
         inverse = rasterise_view(mesh, view).inverse_depth
@@ -182,7 +187,7 @@ def draw_means(
         rays = np.stack([column, row, np.ones_like(row)], axis=-1) @ np.linalg.inv(view.K).T
         points = (rays / np.maximum(inverse, 1e-30)[..., None] - view.t) @ view.R
         total, count = np.zeros((*inverse.shape, 3), np.float32), np.zeros(inverse.shape, np.float32)
-        for picture, camera, depth in zip(pictures, cameras, depths, strict=True):
+        for picture, camera, depth in zip(codes, cameras, depths, strict=True):
             pixels, distance = camera.project(points.reshape(-1, 3))
             at = np.clip(np.nan_to_num(pixels), -2, (camera.width + 1, camera.height + 1)).astype(np.float32) - 0.5
             at, distance = at.reshape(*inverse.shape, 2), distance.reshape(inverse.shape)
@@ -200,18 +205,16 @@ def _read(picture: NDArray[Any], at: NDArray[np.float32], how: int) -> NDArray[A
     return np.asarray(cv2.remap(picture, at[..., 0], at[..., 1], how))
 
 
-def halved(
-    pictures: NDArray[np.uint8], cameras: Sequence[Camera], side: int
-) -> tuple[NDArray[np.uint8], Sequence[Camera]]:
+def halved(pictures: Pictures, cameras: Sequence[Camera], side: int) -> tuple[Pictures, Sequence[Camera]]:
     """Photographs and cameras at half the size, until the longer side is at most that.
 
     Args:
-        pictures: (V, H, W, 3) uint8 photographs.
+        pictures: (V, H, W, 3) uint8 photographs, or packed.
         cameras: V of them.
         side: Pixels.
     """
     while max(pictures.shape[1:3]) > side:
-        pictures = unpack_pictures(halve_pictures(pictures))
+        pictures = halve_pictures(pictures)
         height, width = pictures.shape[1:3]
         half = np.diag([0.5, 0.5, 1.0])
         cameras = [replace(camera, K=half @ camera.K, width=width, height=height) for camera in cameras]

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.runtime.parallel import parallel_map
+from eigenfield.stereo.taps import OUTSIDE_PIXEL
 from eigenfield.stereo.views import Pictures, pack_pictures, unpack_pictures
 
 DETAIL_DIAMETER_PIXELS, DETAIL_RANGE_SIGMA_LEVELS, DETAIL_SPACE_SIGMA_PIXELS = 9, 20.0, 3.0  # of the bilateral filter
@@ -48,7 +49,8 @@ def detail_pictures(
         raised = DETAIL_MID_LEVEL + gain * (colours - base) + base_gain * (base - DETAIL_MID_LEVEL)
         if blur_sigma > 0:
             raised = cv2.GaussianBlur(raised, (0, 0), blur_sigma)
-        result[index] = pack_pictures(np.clip(np.rint(raised), 0, 255).astype(np.uint8)[None])[0]
+        codes = np.clip(np.rint(raised), 0, 255).astype(np.uint8)
+        result[index] = pack_pictures(codes[None])[0] | (packed[index] & OUTSIDE_PIXEL)
 
     parallel_map(work, range(len(packed)))
     return result

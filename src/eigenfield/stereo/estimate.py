@@ -20,6 +20,7 @@ from eigenfield.stereo.views import (
     check_matrices,
     halve_pictures,
     halved_matrices,
+    inside_pictures,
     label_parallax,
     pack_pictures,
     unpack_pictures,
@@ -112,7 +113,8 @@ def warp_reference_picture(
     size = (shape[1], shape[0])
     colours = unpack_pictures(packed[index]).astype(np.float32)
     warped = cv2.warpPerspective(colours, homography, size, flags=flags, borderMode=cv2.BORDER_REPLICATE)
-    inside = cv2.warpPerspective(np.ones(colours.shape[:2], np.float32), homography, size, flags=flags)
+    pixels = inside_pictures(packed[index : index + 1])[0].astype(np.float32)
+    inside = cv2.warpPerspective(pixels, homography, size, flags=flags)
     return np.asarray(warped, np.float32), inside > 0.999
 
 

@@ -53,9 +53,13 @@ def _reference_patch(reference, y, x, taps, patch):
 
 
 @kernel(fastmath=FASTMATH_ORDERED)
-def _patch_cost(matrix, picture, height, width, x, y, d, gx, gy, taps, patch, variance, floats, ints):
-    """1 - the weighted normalised cross-correlation with one view; negative where the view does not show the point."""
+def _patch_cost(matrix, picture, size, line, x, y, d, gx, gy, taps, patch, variance, floats, ints):
+    """1 - the weighted normalised cross-correlation with one view; negative where the view does not show the point.
+
+    size: (2,) height and width of its photograph, in rows of `line` pixels.
+    """
     f = np.float32
+    height, width = size[0], size[1]
     z = matrix[2, 0] * x + matrix[2, 1] * y + matrix[2, 2] * d + matrix[2, 3]
     if not z > f(1e-6):
         return -_ONE
@@ -68,7 +72,7 @@ def _patch_cost(matrix, picture, height, width, x, y, d, gx, gy, taps, patch, va
     px, py, pz = matrix[0, 0] + gx * matrix[0, 2], matrix[1, 0] + gx * matrix[1, 2], matrix[2, 0] + gx * matrix[2, 2]
     qx, qy, qz = matrix[0, 1] + gy * matrix[0, 2], matrix[1, 1] + gy * matrix[1, 2], matrix[2, 1] + gy * matrix[2, 2]
     last_x, last_y = right - f(0.004), bottom - f(0.004)
-    wide = np.int32(width)
+    wide = np.int32(line)
     least = f(0.5) * z
     for s in range(PATCH_TAPS):
         u, v = taps[0, s], taps[1, s]
@@ -102,19 +106,19 @@ def _plane_cost(views, x, y, d, gx, gy, taps, patch, variance, costs, floats, in
 
     With maps of the views' inverse depths, a view that has another depth there costs up to `geometric` more.
     """
-    matrices, pictures, height, width, depths, offset, scale, tolerance, geometric = views
+    matrices, pictures, sizes, line, depths, offset, scale, tolerance, geometric = views
     f = np.float32
     count = 0
     for v in range(matrices.shape[0]):
         matrix = matrices[v]
-        c = _patch_cost(matrix, pictures[v], height, width, x, y, d, gx, gy, taps, patch, variance, floats, ints)
+        c = _patch_cost(matrix, pictures[v], sizes[v], line, x, y, d, gx, gy, taps, patch, variance, floats, ints)
         if c < _ZERO:
             continue
         if depths.shape[1] > 0:
             z = matrix[2, 0] * x + matrix[2, 1] * y + matrix[2, 2] * d + matrix[2, 3]
             i = np.int32((matrix[0, 0] * x + matrix[0, 1] * y + matrix[0, 2] * d + matrix[0, 3]) / z + _HALF)
             j = np.int32((matrix[1, 0] * x + matrix[1, 1] * y + matrix[1, 2] * d + matrix[1, 3]) / z + _HALF)
-            w = depths[v, j * width + i]
+            w = depths[v, j * line + i]
             apart = abs(w * z / max(offset + scale * d, f(1e-20)) - _ONE)
             c += geometric * min(apart / tolerance, _ONE)
         k = count  # insertion: there are few

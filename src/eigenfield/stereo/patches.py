@@ -30,6 +30,7 @@ from eigenfield.stereo.views import (
     check_matrices,
     halve_pictures,
     halved_matrices,
+    inside_pictures,
     pack_pictures,
     unpack_pictures,
 )
@@ -75,7 +76,8 @@ def match_patches(
     """Depth of a reference view as a plane a point, at half resolution (rounded up).
 
     Args:
-        pictures: (V, H, W, 3) uint8 or packed; the first is the reference camera's own.
+        pictures: (V, H, W, 3) uint8 or packed; the first is the reference camera's own. Photographs smaller than the
+            frame begin in its corner at the top left.
         shape: (h, w) of the reference view, at most (H, W).
         high: Highest label; the lowest is 0.
         planes: To begin with. None: those of a sweep.
@@ -111,11 +113,12 @@ def _kernel_views(
 ) -> tuple[NDArray[np.float32], tuple[Any, ...]]:
     """The grey reference picture, and the views as `_plane_cost` reads them."""
     grey = unpack_pictures(packed).astype(np.float32).mean(axis=-1)
-    count, (height, width) = len(packed) - 1, grey.shape[1:]
+    count, inside = len(packed) - 1, inside_pictures(packed[1:])
+    sizes = np.stack([inside.any(axis=axis).sum(axis=1) for axis in (2, 1)], axis=1)
     known = others or OtherMaps(np.zeros((count, 0), np.float32), 0, 1, 1, np.zeros((0, *shape), np.float32))
     depths = np.ascontiguousarray(known.inverse_depth, np.float32).reshape(count, -1)
     numbers = [np.float32(v) for v in (known.offset, known.scale, known.tolerance, PATCH_GEOMETRIC_COST)]
-    views = matrices[1:].astype(np.float32), grey[1:].reshape(count, -1), height, width, depths, *numbers
+    views = matrices[1:].astype(np.float32), grey[1:].reshape(count, -1), sizes, grey.shape[2], depths, *numbers
     return np.ascontiguousarray(grey[0, : shape[0], : shape[1]]), views
 
 

@@ -5,7 +5,8 @@ vectorised), `fetch_run` (memory, one by one) and the caller's arithmetic (vecto
 single loop scalar, at a fifth of the speed. Scratch arrays are flat: slot k of point i is [k TAP_RUN + i], a distance
 that the compiler knows.
 
-A photograph is one uint32 a pixel (red in the lowest byte), so that a corner of the bilinear cell is one load.
+A photograph is one uint32 a pixel (red in the lowest byte), so that a corner of the bilinear cell is one load. Where a
+photograph smaller than the others ends, the highest byte says so: points beyond are hidden.
 """
 
 # mypy: disable-error-code="no-untyped-def"
@@ -21,6 +22,8 @@ TAP_FLOAT_SLOTS = 4  # fraction x, fraction y, visibility limit, depth buffer
 TAP_INT_SLOTS = 6  # address of the cell, its four corners, address of the nearest pixel
 TAP_OUTSIDE_LIMIT = np.float32(-1e30)
 EMPTY_DEPTH_LABEL = np.float32(-1e9)  # of a depth buffer where no point falls
+HIDING_DEPTH_LABEL = np.float32(1e9)  # that hides every point
+OUTSIDE_PIXEL = np.uint32(0xFF000000)  # of a packed picture: where no photograph is
 FASTMATH_ORDERED = {"contract", "nnan", "nsz", "ninf", "arcp"}  # no re-association: sums keep their order
 FASTMATH_NAN_SAFE = {"contract", "nsz"}  # where input may hold NaNs that must be recognised
 
@@ -74,7 +77,7 @@ def project_run(matrix, y, x, count, label, limit, height, width, floats, ints):
 
 @kernel(fastmath=FASTMATH_ORDERED)
 def fetch_run(picture, buffer, width, count, floats, ints):
-    """The four corners of each point's cell, and the depth buffer at the nearest pixel.
+    """The four corners of each point's cell, and the depth buffer at the nearest pixel; outside it hides every point.
 
     Args:
         picture: (H W,) packed.
@@ -98,6 +101,9 @@ def fetch_run(picture, buffer, width, count, floats, ints):
     else:
         for i in range(count):
             floats[i + 3 * TAP_RUN] = EMPTY_DEPTH_LABEL
+    for i in range(count):
+        outside = (ints[i + TAP_RUN] | ints[i + 4 * TAP_RUN]) >= OUTSIDE_PIXEL  # photographs are rectangles
+        floats[i + 3 * TAP_RUN] = HIDING_DEPTH_LABEL if outside else floats[i + 3 * TAP_RUN]
 
 
 @kernel(inline=True)

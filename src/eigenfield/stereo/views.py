@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from numpy.typing import NDArray
+
+from eigenfield.stereo.taps import OUTSIDE_PIXEL
 
 Pictures = NDArray[np.uint8] | NDArray[np.uint32]  # (V, H, W, 3), or packed (V, H, W)
 PARALLAX_SECTORS = 8
@@ -12,7 +16,8 @@ PARALLAX_SECTORS = 8
 def pack_pictures(pictures: Pictures) -> NDArray[np.uint32]:
     """Pictures as one uint32 a pixel, red in the lowest byte; packed pictures are returned unchanged.
 
-    Every function of this package takes either form. Packing once saves time where many are called.
+    Every function of this package takes either form. Packing once saves time where many are called, and packed pictures
+    can say which pixels no photograph has (`mark_outside`): no function takes these for seen.
 
     Returns:
         (V, H, W) uint32.
@@ -31,9 +36,40 @@ def pack_pictures(pictures: Pictures) -> NDArray[np.uint32]:
     return packed.view(np.uint32)[..., 0]
 
 
+def mark_outside(pictures: Pictures, places: Sequence[tuple[slice, slice]]) -> Pictures:
+    """Packed pictures that know where photographs smaller than the frame end; the same if none is smaller.
+
+    Args:
+        places: Rows and columns of each photograph, whose edges go on beyond them.
+    """
+    outside = np.ones(pictures.shape[:3], np.bool_)
+    for one, place in zip(outside, places, strict=True):
+        one[place] = False
+    if not outside.any():
+        return pictures
+    packed = pack_pictures(pictures)
+    packed[outside] |= OUTSIDE_PIXEL
+    return packed
+
+
+def inside_pictures(pictures: Pictures) -> NDArray[np.bool_]:
+    """(V, H, W) where photographs have pixels; see `mark_outside`."""
+    return np.asarray(pictures < OUTSIDE_PIXEL) if pictures.ndim == 3 else np.ones(pictures.shape[:3], np.bool_)
+
+
 def unpack_pictures(pictures: NDArray[np.uint32]) -> NDArray[np.uint8]:
     """(..., H, W, 3) uint8 of packed pictures."""
-    return np.ascontiguousarray(pictures[..., None]).view(np.uint8)[..., :3]
+    return picture_bytes(pictures)[..., :3]
+
+
+def codes_of(pictures: Pictures) -> NDArray[np.uint8]:
+    """(V, H, W, 3) uint8 of pictures in either form."""
+    return unpack_pictures(pictures.view(np.uint32)) if pictures.ndim == 3 else pictures.view(np.uint8)
+
+
+def picture_bytes(pictures: NDArray[np.uint32]) -> NDArray[np.uint8]:
+    """(..., H, W, 4) uint8 of packed pictures: red, green, blue, and 255 outside photographs, else 0."""
+    return np.ascontiguousarray(pictures[..., None]).view(np.uint8)
 
 
 def check_matrices(matrices: NDArray[np.float64], count: int) -> NDArray[np.float64]:
@@ -52,7 +88,7 @@ def check_matrices(matrices: NDArray[np.float64], count: int) -> NDArray[np.floa
 
 
 def halve_pictures(pictures: Pictures) -> NDArray[np.uint32]:
-    """Packed pictures at half the size (rounded up), each pixel the mean of four."""
+    """Packed pictures at half the size (rounded up), each pixel the mean of four; outside where all four are."""
     packed = pack_pictures(pictures)
     count, height, width = packed.shape
     result = np.empty((count, (height + 1) // 2, (width + 1) // 2), np.uint32)
@@ -61,6 +97,10 @@ def halve_pictures(pictures: Pictures) -> NDArray[np.uint32]:
         colours = np.pad(colours, ((0, height % 2), (0, width % 2), (0, 0)), mode="edge").astype(np.uint16)
         total = colours[::2, ::2] + colours[1::2, ::2] + colours[::2, 1::2] + colours[1::2, 1::2]
         result[index] = pack_pictures(((total + 2) // 4).astype(np.uint8)[None])[0]
+        beyond = packed[index] & OUTSIDE_PIXEL
+        if beyond.any():
+            beyond = np.pad(beyond, ((0, height % 2), (0, width % 2)), mode="edge")
+            result[index] |= beyond[::2, ::2] & beyond[1::2, ::2] & beyond[::2, 1::2] & beyond[1::2, 1::2]
     return result
 
 

@@ -12,6 +12,7 @@ from eigenfield.calibration.planar.array import ArrayModel
 from eigenfield.calibration.planar.kernels import normal_equations
 from eigenfield.runtime.parallel import parallel_map
 from eigenfield.stereo.reference_view import ReferenceView
+from eigenfield.stereo.views import picture_bytes
 
 FIT_MIN_VIEW_FRACTION = 0.15  # of the views, which must see a point that cameras are fitted to
 FIT_MIN_GRADIENT_LEVELS = 2.0  # a pixel: weaker gradients do not constrain a camera
@@ -81,7 +82,7 @@ def gauss_newton_step(
     Returns:
         (v, 10) parameters, and (v,) root mean square differences before the step, grey levels.
     """
-    channels = target.pictures.view(np.uint8).reshape(*target.pictures.shape, 4)
+    channels = picture_bytes(target.pictures)
     matrices = model.matrices(target.reference, views, parameters)
     derivatives = model.derivatives(target.reference, views, parameters, count)
     prior = 1 / model.sigma[:count] ** 2

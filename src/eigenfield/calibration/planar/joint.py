@@ -30,7 +30,15 @@ from eigenfield.stereo.refine import refine_depth
 from eigenfield.stereo.semiglobal import semi_global_matching
 from eigenfield.stereo.smooth import smooth_depth
 from eigenfield.stereo.sweep import SWEEP_MAX_DIFFERENCE_LEVELS, plane_sweep
-from eigenfield.stereo.views import HALF_FROM_FULL_INDEX, halve_pictures, pack_pictures, unpack_pictures
+from eigenfield.stereo.taps import OUTSIDE_PIXEL
+from eigenfield.stereo.views import (
+    HALF_FROM_FULL_INDEX,
+    Pictures,
+    halve_pictures,
+    inside_pictures,
+    pack_pictures,
+    unpack_pictures,
+)
 from eigenfield.stereo.visibility import depth_buffers, mean_texture
 
 log = logging.getLogger("eigenfield.calibration")
@@ -163,7 +171,7 @@ class _JointRefinement:
             reach = PLANAR_SWEEP_REACH_LABELS * step
             floor = np.asarray(cv2.erode(d, window) - reach, np.float32)
             ceiling = np.asarray(cv2.dilate(d, window) + reach, np.float32)
-        reference, known = _pad_to_reference(unpack_pictures(self.half_size[self.centre]), small.shape)
+        reference, known = _pad_to_reference(self.half_size[self.centre], small.shape)
         cost = plane_sweep(
             self.half_size[views], matrices, small.shape, labels, reference=reference, known=known,
             unseen_cost=SWEEP_MAX_DIFFERENCE_LEVELS, floor=floor, ceiling=ceiling,
@@ -246,14 +254,14 @@ class _JointRefinement:
 
 
 def refine_planar(
-    photographs: NDArray[np.uint8], start: PlanarStart, *, exact: bool = False, progress: Progress | None = None
+    photographs: Pictures, start: PlanarStart, *, exact: bool = False, progress: Progress | None = None
 ) -> PlanarArray:
     """Estimate depth, and correct cameras unless they are exact.
 
     The result has near and far in the right order: if `start` does not know it, occlusion decides.
 
     Args:
-        photographs: (n, H, W, 3) uint8.
+        photographs: (n, H, W, 3) uint8, or packed.
         exact: Do not correct the cameras.
     """
     pictures = pack_pictures(photographs)
@@ -403,16 +411,17 @@ def _inner_error(pictures: NDArray[np.uint32], start: PlanarStart, rings: Sequen
 
 def blurred(picture: NDArray[np.uint32]) -> NDArray[np.uint32]:
     """A packed picture without its finest detail, in which cameras find their place from farther off."""
-    return pack_pictures(np.asarray(cv2.GaussianBlur(unpack_pictures(picture), (0, 0), 2.0), np.uint8)[None])[0]
+    soft = np.asarray(cv2.GaussianBlur(unpack_pictures(picture), (0, 0), 2.0), np.uint8)
+    return np.asarray(pack_pictures(soft[None])[0] | (picture & OUTSIDE_PIXEL))
 
 
 def _pad_to_reference(
-    picture: NDArray[np.uint8], shape: tuple[int, int]
+    picture: NDArray[np.uint32], shape: tuple[int, int]
 ) -> tuple[NDArray[np.uint8], NDArray[np.bool_]]:
-    """The picture in the middle of the reference view with its edges replicated, and the mask of its own pixels."""
+    """The packed picture in the middle of the reference view with its edges replicated, and where it has pixels."""
     top, left = (shape[0] - picture.shape[0]) // 2, (shape[1] - picture.shape[1]) // 2
     bottom, right = shape[0] - picture.shape[0] - top, shape[1] - picture.shape[1] - left
     known = np.zeros(shape, np.bool_)
-    known[top : top + picture.shape[0], left : left + picture.shape[1]] = True
-    drawn_out = cv2.copyMakeBorder(picture, top, bottom, left, right, cv2.BORDER_REPLICATE)
+    known[top : top + picture.shape[0], left : left + picture.shape[1]] = inside_pictures(picture[None])[0]
+    drawn_out = cv2.copyMakeBorder(unpack_pictures(picture), top, bottom, left, right, cv2.BORDER_REPLICATE)
     return np.asarray(drawn_out, np.uint8), known

@@ -23,7 +23,7 @@ def _bilinear_rgb(picture, x, y):  # type: ignore[no-untyped-def]
 
 @kernel(fastmath=True)
 def normal_equations(picture, points, colours, matrix, buffer, bias, tau, left, right):  # type: ignore[no-untyped-def]
-    """Gauss-Newton sums of one camera's matrix over points with known colours.
+    """Gauss-Newton sums of one camera's matrix over points with known colours that its photograph shows.
 
     With e = T - I(pi(p)) in each channel, J = grad I dpi/dtheta and Cauchy weights w = 1 / (1 + e^2 / tau^2):
     sum w J J^T and sum w J e. A point counts unless the depth buffer is nearer by more than `bias`.
@@ -33,7 +33,7 @@ def normal_equations(picture, points, colours, matrix, buffer, bias, tau, left, 
     parameters follow from these by the chain rule.
 
     Args:
-        picture: (H, W, 4) uint8.
+        picture: (H, W, 4) uint8 of a packed picture.
         points: (k, 3) x, y, d.
         colours: (k, 3) T, grey levels.
         matrix: (3, 4) of the camera.
@@ -60,6 +60,8 @@ def normal_equations(picture, points, colours, matrix, buffer, bias, tau, left, 
         if not (u >= 2 and v >= 2 and u < width - 3 and v < height - 3):
             continue
         if buffer[int(v + 0.5), int(u + 0.5)] > d + bias:
+            continue
+        if picture[int(v) - 2, int(u) - 2, 3] > 0 or picture[int(v) + 3, int(u) + 3, 3] > 0:
             continue
         here = _bilinear_rgb(picture, u, v)
         east, west = _bilinear_rgb(picture, u + half, v), _bilinear_rgb(picture, u - half, v)

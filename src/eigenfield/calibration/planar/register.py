@@ -13,14 +13,14 @@ from eigenfield.calibration.planar.fit import PhotometricTarget, gauss_newton_st
 from eigenfield.calibration.planar.joint import PLANAR_TAU_LEVELS, PLANAR_VISIBILITY_BIAS_PIXELS, PlanarArray, blurred
 from eigenfield.core.camera import Camera
 from eigenfield.runtime.parallel import parallel_map
-from eigenfield.stereo.views import pack_pictures
+from eigenfield.stereo.views import Pictures, pack_pictures
 from eigenfield.stereo.visibility import depth_buffers
 
 
 def register_views(
     planar: PlanarArray,
     known: NDArray[np.int64],
-    photographs: NDArray[np.uint8],
+    photographs: Pictures,
     new: NDArray[np.int64],
     positions: NDArray[np.float64],
     bases: Sequence[Camera] | None = None,
@@ -30,7 +30,7 @@ def register_views(
 
     Args:
         known: Indices of its views among all n.
-        photographs: (v, H, W, 3) uint8 of the new views.
+        photographs: (v, H, W, 3) uint8 of the new views, or packed.
         new: (v,) their indices among all n.
         positions: (n, 2) of all views in any unit: new cameras start on the affine grid of the known ones.
         bases: Of all n, if cameras were given.

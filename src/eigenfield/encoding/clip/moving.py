@@ -25,7 +25,7 @@ from eigenfield.encoding.clip.digest import footage_digest
 from eigenfield.imaging.metrics import to_codes
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy.relief.moving_sheet import MovingSheet, SheetGrid, sheet_grid
-from eigenfield.reconstruction.frame import read_masks, read_pictures, resized_cameras
+from eigenfield.reconstruction.frame import read_pictures, resized_cameras, shown_pixels
 from eigenfield.reconstruction.whole import Reconstruction
 from eigenfield.runtime.files import read_arrays
 from eigenfield.runtime.parallel import parallel_map
@@ -67,7 +67,7 @@ class _Frames:
     @staticmethod
     def of(footage: Footage, made: Reconstruction, reference: ReferenceView, stages: Stages) -> _Frames:
         mesh, cameras = made.proxy.mesh, resized_cameras(made.light_field)
-        pictures, masks = read_pictures(made.light_field), read_masks(made.light_field)
+        pictures, known = read_pictures(made.light_field), shown_pixels(made.light_field)
         inverse = rasterise_view(mesh, reference.camera).inverse_depth
         nearest = distance_transform_edt(inverse == 0, return_distances=False, return_indices=True)
         d = ((inverse[tuple(nearest)] - reference.offset) / reference.scale).astype(np.float32)
@@ -76,7 +76,7 @@ class _Frames:
             digest.update(camera.matrix.tobytes())
         key = stage_key([footage_digest(footage), digest.hexdigest()], SCENE_ROOMS)
         still = StillDepth.of(view_matrices(reference, cameras), d)
-        return _Frames(footage, still, pictures, None if masks is None else masks[..., 0] > 127, stages, key)
+        return _Frames(footage, still, pictures, known, stages, key)
 
     def changed(self, pictures: NDArray[np.uint8]) -> NDArray[np.bool_]:
         """(V, H, W) where photographs of a frame do not show what stands still."""
@@ -115,8 +115,7 @@ class _Frames:
 
         def build(folder: Path) -> None:
             instant = self.instant(len(folders))
-            pictures, masks = read_pictures(instant), read_masks(instant)
-            shown = None if masks is None else masks[..., 0] > 127
+            pictures, shown = read_pictures(instant), shown_pixels(instant)
             before = next(moving_depths(folders[-1:]), None)
             found = find_moving(pictures, self.changed(pictures) | unsettled, self.still, before, shown)
             opacity, texture = (to_codes(one) for one in (found.opacity, found.texture / 255))

@@ -19,7 +19,7 @@ from eigenfield.runtime.shared import Shared, share
 from eigenfield.stereo import ReferenceView, view_matrices
 from eigenfield.stereo.patches import OtherMaps, match_patches, upsample_planes
 from eigenfield.stereo.smooth import smooth_depth
-from eigenfield.stereo.views import halve_pictures, unpack_pictures
+from eigenfield.stereo.views import Pictures, halve_pictures, mark_outside, unpack_pictures
 
 DEPTH_RANGE_END_LABELS = 0.25  # depths this near the ends of the range are invalid
 DEPTH_AGREEMENT_PIXELS = 1.0  # of parallax, up to which two maps agree; at twice as much they differ altogether
@@ -87,13 +87,13 @@ class _Stack:
     Attributes:
         reference: The view.
         high: The highest label.
-        pictures: (V, H, W, 3), its own first.
+        pictures: (V, H, W, 3) or packed, its own first.
         matrices: (V, 3, 4).
     """
 
     reference: ReferenceView
     high: float
-    pictures: NDArray[np.uint8]
+    pictures: Pictures
     matrices: NDArray[np.float64]
 
 
@@ -167,11 +167,12 @@ def _stack_pictures(job: DepthJob, pictures: Mapping[int, WorkingPicture] | Sequ
     unit = 1 / (reference_picture.camera.K[0, 0] * max(float(np.median(across)), 1e-12))
     reference = ReferenceView.with_margin(reference_picture.camera, 0, job.span[0], unit)
     height, width = max(p.pixels.shape[0] for p in used), max(p.pixels.shape[1] for p in used)
-    stack = np.zeros((len(used), height, width, 3), np.uint8)
-    for slot, part in zip(stack, (picture.pixels for picture in used), strict=True):
-        slot[: part.shape[0], : part.shape[1]] = part
+    sizes = [(picture.pixels.shape[0], picture.pixels.shape[1]) for picture in used]
+    around = [((0, height - h), (0, width - w), (0, 0)) for h, w in sizes]
+    stack = np.stack([np.pad(one.pixels, more, mode="edge") for one, more in zip(used, around, strict=True)])
     matrices = view_matrices(reference, [picture.camera for picture in used])
-    return _Stack(reference, (job.span[1] - job.span[0]) / unit, stack, matrices)
+    marked = mark_outside(stack, [(slice(h), slice(w)) for h, w in sizes])
+    return _Stack(reference, (job.span[1] - job.span[0]) / unit, marked, matrices)
 
 
 def _first_map(job: DepthJob, pictures: Mapping[int, WorkingPicture] | Sequence[WorkingPicture]) -> _FirstMap:

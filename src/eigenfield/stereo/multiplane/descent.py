@@ -19,6 +19,7 @@ from eigenfield.runtime.parallel import parallel_map
 from eigenfield.stereo.multiplane.drawing import Labels, backpropagate, draw_layers, view_rays
 from eigenfield.stereo.multiplane.kernels import add_priors, move
 from eigenfield.stereo.multiplane.pyramid import Pyramid
+from eigenfield.stereo.taps import OUTSIDE_PIXEL
 from eigenfield.stereo.views import unpack_pictures
 
 log = logging.getLogger("eigenfield.stereo")
@@ -100,6 +101,7 @@ class Descent:
                 waiting = order.permutation(len(pictures))
             view, waiting = int(waiting[-1]), waiting[:-1]
             rays = view_rays(matrices[view], shape[1:])
+            rays[pictures[view] >= OUTSIDE_PIXEL, 0] = np.nan  # nothing is drawn there, so that nothing follows from it
             draw_layers(self.labels, self.layers, rays, places, drawn)
             error = backpropagate(unpack_pictures(pictures[view]), places, drawn, gradients)
             falling = tuning.last_rate_ratio ** ((number - 1) / tuning.steps)

@@ -22,6 +22,7 @@ from eigenfield.stereo.views import (
     check_matrices,
     halve_pictures,
     halved_matrices,
+    inside_pictures,
     pack_pictures,
     unpack_pictures,
 )
@@ -223,16 +224,16 @@ def start_layers(
     tuning: MultiplaneTuning = MULTIPLANE_TUNING,
 ) -> NDArray[np.float32]:
     """(D, h, w, 4): the mean of the photographs on each plane, opaque where they differ least among all planes."""
-    codes = unpack_pictures(pictures)
+    codes, known = unpack_pictures(pictures), inside_pictures(pictures).view(np.uint8)
     homographies = np.stack([plane_homographies(matrix, labels) for matrix in matrices])
 
     def sweep(index: int) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
         total, squares = np.zeros((2, *shape, 3), np.float32)
         count = np.zeros(shape, np.float32)
-        for view, homography in zip(codes, homographies[:, index], strict=True):
+        for view, pixels, homography in zip(codes, known, homographies[:, index], strict=True):
             size = shape[::-1]
             picture = cv2.warpPerspective(view, homography, size).astype(np.float32) / 255
-            inside = cv2.warpPerspective(np.ones(view.shape[:2], np.uint8), homography, size, flags=cv2.INTER_NEAREST)
+            inside = cv2.warpPerspective(pixels, homography, size, flags=cv2.INTER_NEAREST)
             picture *= inside[..., None]
             total += picture
             squares += picture * picture
