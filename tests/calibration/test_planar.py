@@ -8,10 +8,12 @@ from numpy.testing import assert_allclose
 
 from eigenfield.calibration import refine_planar, register_views, start_given, start_planar
 from eigenfield.calibration.planar.array import ARRAY_PARAMETERS, ArrayModel
+from eigenfield.calibration.planar.joint import _JointRefinement
 from eigenfield.calibration.planar.kernels import normal_equations
 from eigenfield.calibration.planar.start import nominal_positions
 from eigenfield.capture import GridLayout
 from eigenfield.core.errors import CaptureError
+from eigenfield.stereo.views import pack_pictures
 from support.planes import everywhere, paint, photograph
 
 SIDE = 144
@@ -125,6 +127,15 @@ def test_a_view_that_took_no_part_is_registered(jittering, names):
     truth = places - places[known[np.argmin(np.linalg.norm(planar.parameters[:, :2], axis=1))]]
     _, scale = same_array(whole.parameters[known, :2], truth[known])
     assert np.linalg.norm(scale * whole.parameters[new, :2] - truth[new], axis=1).max() < 0.06
+
+
+def test_labels_of_a_sweep_are_limited(even, names, monkeypatch, caplog):
+    pictures, _ = even
+    joint = _JointRefinement(pack_pictures(pictures), start_planar(pictures, layout(), names))
+    monkeypatch.setattr("eigenfield.calibration.planar.joint.PLANAR_SWEEP_MAX_LABELS", 33)
+    with caplog.at_level("INFO", "eigenfield.calibration"):
+        joint.sweep_depth(np.arange(SIZE**2))
+    assert "16 views, 33 labels" in caplog.text
 
 
 def test_given_cameras_start_where_they_are(jittering):

@@ -256,6 +256,16 @@ def test_a_capture_with_cameras_has_the_steps_that_its_encode_takes(fitted: tupl
     assert set(cost.steps) <= set(STEPS)
 
 
+def test_a_few_large_photographs_take_the_memory_of_a_sweep(fitted: tuple[Path, Path]) -> None:
+    opened, options = open_any(fitted[0]), EncodeOptions()
+    surface = surface_to_make(options, SurfaceOptions(), blind=False, has_proxy=False)
+    views = [replace(view, camera=replace(view.camera, width=6000, height=4000)) for view in opened.views[:2]]
+    large = replace(opened, views=tuple(views))
+    given = expected_cost(large, options, None, 1).memory
+    assert given == pytest.approx(0.9e9 + 50 * 48e6)
+    assert given + 1e9 < expected_cost(large, options, surface, 1).memory < 6e9
+
+
 def run_on_a_terminal(words: list[str]) -> str:
     """What a command shows on a terminal."""
     own, theirs = pty.openpty()

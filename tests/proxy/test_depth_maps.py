@@ -6,8 +6,17 @@ import numpy as np
 import pytest
 
 from eigenfield.imaging.raster import rasterise_view
-from eigenfield.proxy.surface.depth_maps import _count_agreeing, _FirstMap, _projected_labels, _quantiles
+from eigenfield.proxy.surface.depth_maps import (
+    DepthJob,
+    WorkingPicture,
+    _count_agreeing,
+    _FirstMap,
+    _projected_labels,
+    _quantiles,
+    _stack_pictures,
+)
 from eigenfield.stereo import ReferenceView
+from eigenfield.stereo.views import inside_pictures
 from support.surfaces import ball_before_wall, looking
 
 TOLERANCE = 0.01
@@ -48,6 +57,15 @@ def test_points_of_another_map_fall_on_their_labels(maps):
     assert known.mean() > 0.6 and np.median(off) < 0.05 and (off < 0.5).mean() > 0.85
     doubtful = _FirstMap(other.planes, np.ones_like(other.cost), other.inverse_depth, TOLERANCE)
     assert not np.isfinite(_projected_labels(reference, CAMERAS[1], doubtful)).any()
+
+
+def test_photographs_of_a_job_end_where_they_end():
+    small = CAMERAS[1].resize(90, 70)
+    pictures = [
+        WorkingPicture(c, np.full((c.height, c.width, 3), 9, np.uint8), None, None) for c in (CAMERAS[0], small)
+    ]
+    inside = inside_pictures(_stack_pictures(DepthJob(0, (1,), (0.1, 0.3)), pictures).pictures)
+    assert inside[0].all() and inside[1, :70, :90].all() and inside[1].sum() == 70 * 90
 
 
 def test_quantiles_leave_out_what_is_not_known():

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import signal
 import subprocess
@@ -18,7 +19,9 @@ from eigenfield.capture import open_any, open_capture
 from eigenfield.core.errors import CaptureError, OptionError, ProxyError
 from eigenfield.imaging.raster import rasterise_view
 from eigenfield.proxy import atlas_fault, read_mesh
+from eigenfield.reconstruction import whole
 from eigenfield.reconstruction.array import looks_one_way
+from eigenfield.reconstruction.stage_files import read_planar
 from eigenfield.reconstruction.whole import reconstruct
 from support.captures import write_array
 from support.motion import photographed
@@ -106,28 +109,79 @@ def test_a_photograph_of_another_scene_is_named_and_left_out(photos, tmp_path):
     assert any(foreign.name in problem for problem in result.light_field.problems)
 
 
-def test_photographs_lying_and_upright_give_the_depth_that_is_there(tmp_path):
-    """A square of depth 2 before a wall of depth 3.2, by cameras 0.1 apart."""
-    steps, side = [(0, 0), *((x, y) for y in (-1, 1) for x in (-1, 0, 1))], 128
+SIDE = 128
+
+
+def near(x, y):
+    return (abs(x - 60) < 22) & (abs(y - 64) < 26)
+
+
+def write_square_before_a_wall(folder, steps, places):
+    """A square of depth 2 before a wall of depth 3.2, by cameras 0.1 a step apart that show some rows and columns."""
+    folder.mkdir(exist_ok=True)
     matrices = np.array([[[1, 0, -x, 0], [0, 1, -y, 0], [0, 0, 0, 1]] for x, y in steps], float)
-
-    def near(x, y):
-        return (abs(x - 60) < 22) & (abs(y - 64) < 26)
-
-    pictures = photograph([(6.4, 0, 0, paint(1), near), (4.0, 0, 0, paint(2), everywhere)], matrices, side)
+    pictures = photograph([(6.4, 0, 0, paint(1), near), (4.0, 0, 0, paint(2), everywhere)], matrices, SIDE)
     frames = []
-    for index, (place, (x, y)) in enumerate(zip(lying_and_upright(len(steps), side, 96), steps, strict=True)):
-        Image.fromarray(pictures[index][place]).save(tmp_path / f"{index}.png")
+    for index, ((x, y), picture, place) in enumerate(zip(steps, pictures, places, strict=True)):
+        Image.fromarray(picture[place]).save(folder / f"{index:02}.png")
         camera = {"fl_x": 128, "fl_y": 128, "cx": 64 - place[1].start, "cy": 64 - place[0].start}
         world = [[1, 0, 0, 0.1 * x], [0, 1, 0, -0.1 * y], [0, 0, 1, 0], [0, 0, 0, 1]]
-        frames.append({"file_path": f"{index}.png", "transform_matrix": world, **camera})
-    (tmp_path / "transforms.json").write_text(json.dumps({"frames": frames}))
-    result = reconstruct(open_any(tmp_path), layers=1)
-    assert len(result.light_field) == len(steps) and not result.light_field.problems
-    inverse = rasterise_view(result.proxy.mesh, result.light_field.cameras[0]).inverse_depth
+        frames.append({"file_path": f"{index:02}.png", "transform_matrix": world, **camera})
+    (folder / "transforms.json").write_text(json.dumps({"frames": frames}))
+
+
+def wrong_depths(result):
+    """Part of the first photograph's pixels whose depth is over 5 % off."""
+    camera = result.light_field.cameras[0]
+    inverse = rasterise_view(result.proxy.mesh, camera).inverse_depth
     row, column = np.indices(inverse.shape)
-    truth = 1 / np.where(near(column, row + 16), 2.0, 3.2)
-    assert (np.abs(inverse / truth - 1) > 0.05).mean() < 0.02
+    x, y = column + 64 - camera.K[0, 2], row + 64 - camera.K[1, 2]
+    across, down = 64 * (camera.R @ camera.centre)[:2]
+    true = np.where(near(x + across, y + down), 1 / 2.0, 1 / 3.2)
+    return (np.abs(inverse / true - 1) > 0.05).mean()
+
+
+def test_photographs_lying_and_upright_give_the_depth_that_is_there(tmp_path):
+    cameras = [(0, 0), *((x, y) for y in (-1, 1) for x in (-1, 0, 1))]
+    write_square_before_a_wall(tmp_path, cameras, lying_and_upright(len(cameras), SIDE, 96))
+    result = reconstruct(open_any(tmp_path), layers=1)
+    assert len(result.light_field) == len(cameras) and not result.light_field.problems
+    assert wrong_depths(result) < 0.02
+
+
+def test_depth_is_estimated_at_a_smaller_size_where_memory_ends(tmp_path, monkeypatch, caplog):
+    cameras = [(x, y) for y in (-1, 0, 1) for x in (-1, 0, 1)]
+    write_square_before_a_wall(tmp_path / "capture", cameras, [(slice(0, SIDE), slice(0, SIDE))] * len(cameras))
+    monkeypatch.setattr("eigenfield.stereo.estimate.DEPTH_MAX_PIXELS", SIDE**2 / 2)
+    with caplog.at_level("INFO", "eigenfield"):
+        result = reconstruct(open_any(tmp_path / "capture"), layers=1, work=tmp_path / "work")
+    size = int(re.search(r"depth: estimated at (\d+) x \1 pixels", caplog.text)[1])
+    (depth,) = (tmp_path / "work").rglob("depth.npz")
+    assert 64 < size < 90 and read_planar(depth).reference.photograph_size == (size, size)
+    for camera in result.light_field.cameras:
+        assert np.allclose(camera.K, [[128, 0, 64], [0, 128, 64], [0, 0, 1]])
+    assert wrong_depths(result) < 0.06
+
+
+def test_a_walk_past_near_things_is_no_relief(tmp_path, monkeypatch, caplog):
+    """Things move by over twice a photograph's width from its middle to its end."""
+
+    def all_around(run, shown, points):
+        raise RuntimeError("from all sides")
+
+    monkeypatch.setattr(whole, "_poisson", all_around)
+    cameras = [(3 * x, x % 2) for x in range(-14, 15)]
+    write_square_before_a_wall(tmp_path / "capture", cameras, [(slice(0, SIDE), slice(0, SIDE))] * len(cameras))
+    capture = open_any(tmp_path / "capture")
+    assert looks_one_way(capture.cameras)
+    with pytest.raises(RuntimeError, match="from all sides"):
+        reconstruct(capture, layers=1, refine=False, work=tmp_path / "work")
+    monkeypatch.setattr("eigenfield.stereo.estimate.DEPTH_MAX_PIXELS", SIDE**2)
+    with caplog.at_level("INFO", "eigenfield"):
+        relief = reconstruct(capture, surface="relief", refine=False, work=tmp_path / "work")
+    assert list(relief.seconds) == ["array", "relief"] and "depth: estimated at" in caplog.text
+    with pytest.raises(RuntimeError, match="from all sides"):  # whatever is finished
+        reconstruct(capture, layers=1, refine=False, work=tmp_path / "work")
 
 
 def test_options_that_cannot_be(photos):

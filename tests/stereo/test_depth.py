@@ -18,6 +18,7 @@ from eigenfield.stereo import (
     view_matrices,
 )
 from eigenfield.stereo.detail import detail_pictures
+from eigenfield.stereo.estimate import depth_scale
 from eigenfield.stereo.refine import refine_depth
 from eigenfield.stereo.semiglobal import semi_global_matching
 from eigenfield.stereo.smooth import smooth_depth
@@ -267,6 +268,17 @@ def test_what_photographs_do_not_reach_is_not_taken_for_seen(two_layers):
     assert count[5, 5] == 0 and count[5, 48] == 12 and count[48, 5] == 13 and count[48, 48] == 25
     assert np.array_equal(inside_pictures(halve_pictures(marked)), inside_pictures(marked)[:, ::2, ::2])
     assert np.array_equal(inside_pictures(detail_pictures(marked)), inside_pictures(marked))
+
+
+@pytest.mark.parametrize(
+    ("high", "size", "scale"), [(9.0, 1 / 8, 1 / 2), (200.0, 1 / 4, 1 / 2), (9.0, 1.1, 1.0), (0.01, 1.1, 1 / 4)]
+)
+def test_a_sweep_stays_within_its_bytes(high, size, scale, monkeypatch):
+    """Labels move by half a pixel in the fastest view, by sqrt(2) a label: below 256 they fall with the size, too."""
+    labels = min(256, 2 * 2**0.5 * high)
+    monkeypatch.setattr("eigenfield.stereo.estimate.DEPTH_MAX_BYTES", 3 * SIDE**2 * labels * size)
+    monkeypatch.setattr("eigenfield.stereo.estimate.DEPTH_MAX_PIXELS", SIDE**2 if high > 1 else SIDE**2 / 16)
+    assert depth_scale(grid_matrices(3), (SIDE, SIDE), 0.0, high) == pytest.approx(min(scale, 1.0), rel=1e-3)
 
 
 def turned_cameras() -> list[Camera]:

@@ -15,8 +15,10 @@ from eigenfield.encoding.options import SUBSAMPLE_MIN_OBSERVATIONS, EncodeOption
 from eigenfield.encoding.views import encoded_ratio
 from eigenfield.reconstruction import SurfaceOptions
 from eigenfield.reconstruction.array import looks_one_way
+from eigenfield.reconstruction.frame import common_frame
 from eigenfield.reconstruction.layered import capture_fault
 from eigenfield.reconstruction.layers import LAYERS_DENSE_VIEWS
+from eigenfield.stereo.estimate import DEPTH_MAX_BYTES, DEPTH_SWEEP_BYTES, DEPTH_SWEEP_MAX_LABELS
 
 
 class StepCost(NamedTuple):
@@ -64,6 +66,8 @@ LAYERED = {"layers": STEPS["layers"], "mesh": StepCost("mesh", 10, 28), "fit": S
 DENSE_LAYERS_RATIO = 1 / 3  # of the time of layers: dense arrays have fewer
 THREADS_POWER = 0.8  # of the number of threads, by which time falls
 MEMORY_FIXED_BYTES, MEMORY_BYTES_A_PIXEL = 9e8, 50.0
+# While the depth of an array is estimated, beside the volume of a sweep, whose view has so many times the pixels of one
+DEPTH_FIXED_BYTES, DEPTH_BYTES_A_PIXEL, DEPTH_VIEW_RATIO = 4e8, 30.0, 2.0
 SCRATCH_BYTES_A_PIXEL = 17.0
 
 
@@ -126,7 +130,18 @@ def expected_cost(capture: Capture, options: EncodeOptions, surface: SurfaceOpti
             steps["trial"] = seconds("trial", DENSE_TRIAL)
             layered = {name: DENSE_LAYERS_RATIO * spent for name, spent in layered.items()}
     memory = MEMORY_FIXED_BYTES + MEMORY_BYTES_A_PIXEL * pixels
+    if "array" in estimation:
+        memory = max(memory, _depth_memory(capture))
     return Cost(steps, layered, memory, SCRATCH_BYTES_A_PIXEL * pixels)
+
+
+def _depth_memory(capture: Capture) -> float:
+    """Bytes that the depth of an array may take: labels may be as many as a sweep has at most."""
+    width, height = common_frame(capture)[1]
+    volume = DEPTH_SWEEP_BYTES * DEPTH_SWEEP_MAX_LABELS * DEPTH_VIEW_RATIO * width * height
+    smaller = min(1.0, DEPTH_MAX_BYTES / volume)  # to which photographs are reduced
+    beside = DEPTH_BYTES_A_PIXEL * len(capture.sizes) * width * height
+    return DEPTH_FIXED_BYTES + smaller * (volume + beside)
 
 
 def _looks_around(capture: Any) -> bool:

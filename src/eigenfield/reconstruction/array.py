@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.calibration import PlanarArray, PlanarStart, refine_planar, register_views, start_given, start_planar
+from eigenfield.calibration.planar.joint import reference_margin, start_scale
 from eigenfield.capture import Capture, LightField
 from eigenfield.capture.writers.save import save_calibration
 from eigenfield.core.camera import Camera, axis_angles
@@ -21,13 +23,22 @@ from eigenfield.core.mesh import Mesh
 from eigenfield.core.viewplane import fit_view_plane
 from eigenfield.proxy import estimate_second_layer, read_mesh, relief_mesh, write_ply
 from eigenfield.proxy.surface.neighbours import project_inside
-from eigenfield.reconstruction.frame import full_size_cameras, read_depth_pictures, read_masks, resized_cameras
+from eigenfield.reconstruction.frame import (
+    Size,
+    common_frame,
+    full_size_cameras,
+    read_depth_pictures,
+    read_masks,
+    reduced,
+    resized_cameras,
+)
 from eigenfield.reconstruction.options import SurfaceOptions
 from eigenfield.reconstruction.run import StageRunner
 from eigenfield.reconstruction.stage_files import (
     STAGE_CAMERAS_FILE,
     STAGE_DEPTH_FILE,
     STAGE_MESH_FILE,
+    STAGE_WIDE_FILE,
     ArrayDepth,
     read_cameras,
     read_planar,
@@ -58,6 +69,7 @@ ARRAY_MIN_INVERSE_RATIO = 0.02  # of the farthest inverse depth to the nearest
 ARRAY_OUTLIER_RATIO = 2.0  # a photograph whose error is this many times the typical one shows another scene
 ARRAY_OUTLIER_MIN_LEVELS = 8.0  # grey levels by which its error is larger, at least
 ARRAY_DENSE_VIEWS = 25  # number of given views from which cameras are refined by default
+ARRAY_MAX_MARGIN_RATIO = 2  # of the parallax of the outermost camera, for a relief, to a photograph's longer side
 ARRAY_MAX_THICKNESS_FRACTION = 0.15  # distance of cameras from their plane for a relief, relative to the array's extent
 ARRAY_MAX_AXIS_ANGLE_DEGREES = 12.0  # angle between a camera's axis and the mean axis for a relief
 ARRAY_MAX_PLANE_ANGLE_DEGREES = 25.0  # angle between the mean axis and the normal of the array's plane for a relief
@@ -107,8 +119,8 @@ class AlignedArray:
 
 def align_array(
     run: StageRunner, capture: Capture, points: NDArray[np.float64] | None, blind: Collection[str] = ()
-) -> AlignedArray:
-    """Cameras and depth of an array.
+) -> AlignedArray | None:
+    """Cameras and depth of an array; None: it is too wide for one view to show, and `auto` may make another surface.
 
     Args:
         capture: Photographs with cameras or a layout.
@@ -117,17 +129,31 @@ def align_array(
     """
     refine = _must_refine(capture, run.settings)
     known = np.flatnonzero([name not in blind for name in capture.names])
-    inputs = [refine, known.tolist(), None if points is None else len(points)]
+    inputs: list[Any] = [refine, known.tolist(), None if points is None else len(points)]
+    must = run.settings.surface != "auto" or capture.light_field is None
 
-    def build(folder: Path) -> None:
-        pictures = read_depth_pictures(capture)
-        part = capture.subset(known)
+    def begin(size: Size) -> tuple[Pictures, Pictures, list[Camera] | None, PlanarStart]:
+        pictures = read_depth_pictures(capture, size)
         shown = pictures if len(known) == len(pictures) else pictures[known]
-        start = _start_array(part, shown, points)
+        bases = None if capture.light_field is None else resized_cameras(capture, size)
+        cameras = [] if bases is None else [bases[index] for index in known]
+        return pictures, shown, bases, _start_array(capture.subset(known), shown, points, cameras)
+
+    def build(folder: Path, must: bool) -> None:
+        size = common_frame(capture)[1]
+        pictures, shown, bases, start = begin(size)
+        if reference_margin(start) > ARRAY_MAX_MARGIN_RATIO * max(size):
+            (folder / STAGE_WIDE_FILE).touch()
+            if not must:
+                return
+        scale = start_scale(start)
+        if scale < 1:
+            size = reduced(size, scale)
+            log.info("depth: estimated at %d x %d pixels a photograph, to bound memory", *size)
+            pictures, shown, bases, start = begin(size)
         planar = refine_planar(shown, start, exact=not refine, progress=run.progress)
         if len(known) < len(pictures):
             new = np.setdiff1d(np.arange(len(pictures)), known)
-            bases = None if capture.light_field is None else resized_cameras(capture)
             positions = array_positions(capture)[:, ::-1] if start.exchanged else array_positions(capture)
             planar = register_views(planar, known, pictures[new], new, positions, bases, exact=not refine)
         light_field = _light_field(capture, planar)
@@ -135,7 +161,14 @@ def align_array(
         write_cameras(folder / STAGE_CAMERAS_FILE, capture, light_field, np.zeros((0, 3)))
         write_planar(folder / STAGE_DEPTH_FILE, planar)
 
-    folder = run.stage("array", inputs, build)
+    folder = run.stage("array", inputs, partial(build, must=must))
+    if (folder / STAGE_WIDE_FILE).exists():
+        if not must:
+            log.info("surface: from all sides, since near things move by over %d widths", ARRAY_MAX_MARGIN_RATIO)
+            return None
+        if not (folder / STAGE_DEPTH_FILE).exists():  # where `auto` has looked before
+            inputs.append("wide")
+            folder = run.stage("array", inputs, partial(build, must=True))
     light_field, _ = read_cameras(folder / STAGE_CAMERAS_FILE, capture)
     shown = np.intersect1d(known, [capture.names.index(name) for name in light_field.names])
     return AlignedArray(light_field, shown, folder, inputs)
@@ -145,9 +178,9 @@ def relief_of_array(run: StageRunner, capture: Capture, array: AlignedArray) -> 
     """The layered relief of an array, with an atlas."""
 
     def build(folder: Path) -> None:
-        pictures = read_depth_pictures(capture)
-        masks = read_masks(capture)
         depth, keep = array.depth(), array.shown
+        size = depth.reference.photograph_size
+        pictures, masks = read_depth_pictures(capture, size), read_masks(capture, size)
         shown = None if masks is None else masks[keep]
         background = run.settings.background
         closed: list[Camera] = []
@@ -222,14 +255,15 @@ def _must_refine(capture: Capture, settings: SurfaceOptions) -> bool:
     return capture.light_field is None or len(capture) >= ARRAY_DENSE_VIEWS
 
 
-def _start_array(capture: Capture, pictures: Pictures, points: NDArray[np.float64] | None) -> PlanarStart:
+def _start_array(
+    capture: Capture, pictures: Pictures, points: NDArray[np.float64] | None, cameras: Sequence[Camera]
+) -> PlanarStart:
     if capture.light_field is None:
         assert capture.layout is not None
         try:
             return start_planar(codes_of(pictures), capture.layout, capture.names)
         except CaptureError as error:  # it does not know the path
             raise CaptureError(error.code, error.message, path=capture.root, remedy=error.remedy) from None
-    cameras = resized_cameras(capture)
     low, high = inverse_depths(capture, cameras, pictures, points)
     return start_given(cameras, low, high)
 
@@ -255,7 +289,7 @@ def _light_field(capture: Capture, planar: PlanarArray) -> LightField:
         for i in np.flatnonzero(is_outlier)
     ]
     keep = [int(i) for i in np.flatnonzero(~is_outlier)]
-    full_size = full_size_cameras(capture, cameras)
+    full_size = full_size_cameras(capture, cameras, planar.reference.photograph_size)
     return capture.subset(keep).with_cameras([full_size[index] for index in keep], problems=problems)
 
 

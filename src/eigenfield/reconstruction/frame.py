@@ -24,36 +24,48 @@ from eigenfield.runtime.parallel import parallel_map, parallel_stream
 from eigenfield.stereo.views import Pictures, codes_of, mark_outside
 
 FRAME_MAX_TOTAL_PIXELS = 120_000_000  # of all photographs together; larger captures are reduced for depth estimation
+FRAME_MAX_PIXELS = 16_000_000  # likewise of one
 FRAME_EXPOSURE_QUANTILE = 0.75  # of all photographs' brightness, which the others get: dark ones lose less than bright
 FRAME_DARKEST_CODE = 4  # a darker median says nothing about exposure
 ALPHA_UNKNOWN_FORMATS = ("JPEG XL", "TIFF")  # whose headers may say nothing of alpha
 
-
-def common_frame(capture: Capture) -> tuple[tuple[int, int], tuple[int, int]]:
-    """(width, height) that holds every photograph, and the same reduced to keep all within FRAME_MAX_TOTAL_PIXELS."""
-    sizes = capture.sizes
-    width, height = (max(side) for side in zip(*sizes, strict=True))
-    scale = min(1.0, (FRAME_MAX_TOTAL_PIXELS / (len(sizes) * width * height)) ** 0.5)
-    return (width, height), (max(2, round(scale * width)), max(2, round(scale * height)))
+Size = tuple[int, int]  # (width, height) in pixels
 
 
-def _corner(size: tuple[int, int], whole: tuple[int, int]) -> tuple[int, int]:
+def common_frame(capture: Capture, size: Size | None = None) -> tuple[Size, Size]:
+    """(width, height) that holds every photograph, and to what it is reduced.
+
+    Args:
+        size: The reduced one, here and in the functions below; None: that which keeps each photograph within
+            FRAME_MAX_PIXELS, and all together within FRAME_MAX_TOTAL_PIXELS.
+    """
+    width, height = (max(side) for side in zip(*capture.sizes, strict=True))
+    most = min(FRAME_MAX_PIXELS, FRAME_MAX_TOTAL_PIXELS / len(capture.sizes))
+    return (width, height), size or reduced((width, height), min(1.0, (most / (width * height)) ** 0.5))
+
+
+def reduced(size: Size, scale: float) -> Size:
+    """(width, height) at another scale, at least two pixels each."""
+    return max(2, round(scale * size[0])), max(2, round(scale * size[1]))
+
+
+def _corner(size: Size, whole: Size) -> tuple[int, int]:
     """(x, y) in the frame at which a photograph begins: it lies in the middle."""
     return (whole[0] - size[0]) // 2, (whole[1] - size[1]) // 2
 
 
-def frame_places(capture: Capture) -> list[tuple[slice, slice]]:
+def frame_places(capture: Capture, size: Size | None = None) -> list[tuple[slice, slice]]:
     """Rows and columns of each photograph in the common frame, reduced, with those that it fills in part."""
-    whole, small = common_frame(capture)
+    whole, small = common_frame(capture, size)
 
-    def place(begin: int, size: int, axis: int) -> slice:
-        return slice(begin * small[axis] // whole[axis], -(-(begin + size) * small[axis] // whole[axis]))
+    def place(begin: int, side: int, axis: int) -> slice:
+        return slice(begin * small[axis] // whole[axis], -(-(begin + side) * small[axis] // whole[axis]))
 
-    corners = [_corner(size, whole) for size in capture.sizes]
-    return [(place(y, size[1], 1), place(x, size[0], 0)) for (x, y), size in zip(corners, capture.sizes, strict=True)]
+    corners = [_corner(one, whole) for one in capture.sizes]
+    return [(place(y, one[1], 1), place(x, one[0], 0)) for (x, y), one in zip(corners, capture.sizes, strict=True)]
 
 
-def _fit_to_frame(picture: NDArray[Any], whole: tuple[int, int], small: tuple[int, int]) -> NDArray[np.uint8]:
+def _fit_to_frame(picture: NDArray[Any], whole: Size, small: Size) -> NDArray[np.uint8]:
     """A photograph in the middle of the common frame, to which its edges go on, reduced."""
     height, width = picture.shape[:2]
     if (width, height) != whole:
@@ -65,26 +77,26 @@ def _fit_to_frame(picture: NDArray[Any], whole: tuple[int, int], small: tuple[in
     return np.asarray(picture, np.uint8)
 
 
-def read_pictures(capture: Capture) -> NDArray[np.uint8]:
+def read_pictures(capture: Capture, size: Size | None = None) -> NDArray[np.uint8]:
     """(n, H, W, 3) uint8 photographs without lens distortion, in their common frame and about one exposure.
 
     The edges of those smaller than the frame go on beyond them (`read_depth_pictures`). The cameras look about one way
     and show about the same. So exposures follow from the photographs' medians.
     """
-    whole, small = common_frame(capture)
+    whole, small = common_frame(capture, size)
     result = np.empty((len(capture), small[1], small[0], 3), np.uint8)
 
     def fill(index: int) -> None:
         result[index] = _fit_to_frame(np.rint(capture.photograph(index).pixels * 255).astype(np.uint8), whole, small)
 
     parallel_map(fill, range(len(capture)))
-    _level_exposures(result, frame_places(capture))
+    _level_exposures(result, frame_places(capture, size))
     return result
 
 
-def read_depth_pictures(capture: Capture) -> Pictures:
+def read_depth_pictures(capture: Capture, size: Size | None = None) -> Pictures:
     """As `read_pictures`, for the depth search: packed, if any photograph is smaller than the frame."""
-    return mark_outside(read_pictures(capture), frame_places(capture))
+    return mark_outside(read_pictures(capture, size), frame_places(capture, size))
 
 
 def _level_exposures(pictures: NDArray[np.uint8], places: Sequence[tuple[slice, slice]]) -> None:
@@ -150,12 +162,12 @@ def _own_mask(capture: Capture, index: int) -> NDArray[np.float32] | None:
     return Photograph.of(*decode_with_mask(source, *capture.sizes[index])).mask
 
 
-def read_masks(capture: Capture) -> Pictures | None:
+def read_masks(capture: Capture, size: Size | None = None) -> Pictures | None:
     """(n, H, W, 3) uint8 masks of the photographs, 255 where they are valid; None where they hide nothing.
 
     What lies outside a photograph smaller than the frame is no mask: packed ones say it as `read_depth_pictures` does.
     """
-    whole, small = common_frame(capture)
+    whole, small = common_frame(capture, size)
     result = np.full((len(capture), small[1], small[0], 3), 255, np.uint8)
 
     def fill(index: int) -> bool:
@@ -167,7 +179,8 @@ def read_masks(capture: Capture) -> Pictures | None:
         result[index] = _fit_to_frame(np.rint(mask * 255).astype(np.uint8), whole, small)[..., None]
         return True
 
-    return mark_outside(result, frame_places(capture)) if any(parallel_map(fill, range(len(capture)))) else None
+    some = any(parallel_map(fill, range(len(capture))))
+    return mark_outside(result, frame_places(capture, size)) if some else None
 
 
 def shown_pixels(capture: Capture) -> NDArray[np.bool_] | None:
@@ -183,21 +196,21 @@ def shown_pixels(capture: Capture) -> NDArray[np.bool_] | None:
     return shown
 
 
-def resized_cameras(capture: LightField) -> list[Camera]:
+def resized_cameras(capture: LightField, size: Size | None = None) -> list[Camera]:
     """The cameras in the common frame of `read_pictures`."""
-    whole, small = common_frame(capture)
+    whole, small = common_frame(capture, size)
     scale = np.diag([small[0] / whole[0], small[1] / whole[1], 1.0])
     return [
-        replace(camera, K=scale @ _moved(camera.K, _corner(size, whole)), width=small[0], height=small[1])
-        for camera, size in zip(capture.cameras, capture.sizes, strict=True)
+        replace(camera, K=scale @ _moved(camera.K, _corner(one, whole)), width=small[0], height=small[1])
+        for camera, one in zip(capture.cameras, capture.sizes, strict=True)
     ]
 
 
-def full_size_cameras(capture: Capture, cameras: Sequence[Camera]) -> list[Camera]:
+def full_size_cameras(capture: Capture, cameras: Sequence[Camera], size: Size | None = None) -> list[Camera]:
     """The cameras of photographs at their own sizes, from those in the common frame."""
-    whole, small = common_frame(capture)
+    whole, small = common_frame(capture, size)
     scale = np.diag([whole[0] / small[0], whole[1] / small[1], 1.0])
-    corners = [_corner(size, whole) for size in capture.sizes]
+    corners = [_corner(one, whole) for one in capture.sizes]
     return [
         replace(camera, K=_moved(scale @ camera.K, (-x, -y)), width=width, height=height)
         for camera, (x, y), (width, height) in zip(cameras, corners, capture.sizes, strict=True)

@@ -20,6 +20,7 @@ from eigenfield.stereo import ReferenceView
 
 STAGE_MESH_FILE, STAGE_ERROR_FILE = "mesh.ply", "error.json"
 STAGE_CAMERAS_FILE, STAGE_DEPTH_FILE = "cameras.npz", "depth.npz"
+STAGE_WIDE_FILE = "wide"  # empty: an array is too wide for a relief
 STAGE_PROXY_FILE, STAGE_TRIAL_FILE = "proxy.npz", "trial.json"
 
 

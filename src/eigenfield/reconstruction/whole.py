@@ -140,6 +140,7 @@ def reconstruct(
             if workers is not None:
                 log.warning("an array has one depth map of all views: workers have no part in it")
             array = align_array(run, capture, points, unseen)
+        if array is not None:
             light_field, calibration = array.light_field, array.folder / "calibration"
         else:
             assert capture.light_field is not None

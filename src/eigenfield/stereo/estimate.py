@@ -33,6 +33,9 @@ DEPTH_MIN_VIEW_FRACTION = 0.2  # fraction of all views that must see it
 DEPTH_SWEEP_MAX_VIEWS = 49  # views in the sweeps. More views tell nothing new about a label
 DEPTH_SWEEP_STRIDE_PIXELS = 0.5  # movement between two labels in the view that moves most
 DEPTH_SWEEP_MAX_LABELS = 256  # labels of one sweep
+DEPTH_SWEEP_BYTES = 3  # for each pixel and label: its cost, and the sums of semi-global matching
+DEPTH_MAX_BYTES = 4e9  # that a sweep takes so
+DEPTH_MAX_PIXELS = 16_000_000  # of a reference view: each takes some 100 bytes beside
 DEPTH_SWEEP_BIAS_LABELS = 0.3  # labels behind the depth buffer at which a point still counts as visible in a sweep
 DEPTH_SWEEP_DETAIL_GAIN = 3.0  # gain of the detail pictures that are swept
 # Cost in grey levels where too few views look, that of a fair match: smoothness then decides
@@ -128,8 +131,26 @@ def _seen_by_enough(
 
 def label_step(matrices: NDArray[np.float64], shape: tuple[int, int], low: float, high: float) -> float:
     """Distance of the labels of a sweep at full resolution."""
+    step = _stride(matrices, shape, low, high)
+    return float(max(step, (high - low) / (DEPTH_SWEEP_MAX_LABELS - 1)))
+
+
+def _stride(matrices: NDArray[np.float64], shape: tuple[int, int], low: float, high: float) -> float:
+    """Distance of labels that move a point by DEPTH_SWEEP_STRIDE_PIXELS in the view that moves most."""
     fastest = np.hypot(*label_parallax(matrices, shape, (low + high) / 2).T).max(initial=1e-9)
-    return float(max(DEPTH_SWEEP_STRIDE_PIXELS / fastest, (high - low) / (DEPTH_SWEEP_MAX_LABELS - 1)))
+    return float(DEPTH_SWEEP_STRIDE_PIXELS / fastest)
+
+
+def depth_scale(matrices: NDArray[np.float64], shape: tuple[int, int], low: float, high: float) -> float:
+    """The scale of pictures and reference view, at most 1, at which `estimate_depth` stays within DEPTH_MAX_BYTES.
+
+    With them fall the pixels of a sweep and, below DEPTH_SWEEP_MAX_LABELS, its labels.
+    """
+    pixels = shape[0] * shape[1]
+    most = DEPTH_MAX_BYTES / (DEPTH_SWEEP_BYTES * pixels)  # labels
+    asked = (high - low) / _stride(matrices, shape, low, high)
+    swept = max((most / asked) ** (1 / 3), (most / DEPTH_SWEEP_MAX_LABELS) ** (1 / 2))
+    return float(min(1.0, swept, (DEPTH_MAX_PIXELS / pixels) ** (1 / 2)))
 
 
 def spaced_labels(low: float, high: float, step: float) -> NDArray[np.float32]:

@@ -55,6 +55,11 @@ class ReferenceView:
         """(height, width) in pixels."""
         return self.camera.height, self.camera.width
 
+    @property
+    def photograph_size(self) -> tuple[int, int]:
+        """(width, height) within the margin."""
+        return self.camera.width - 2 * self.margin, self.camera.height - 2 * self.margin
+
     def points(self, x: NDArray[np.float64], y: NDArray[np.float64], d: NDArray[np.float64]) -> NDArray[np.float64]:
         """World points of index coordinates and labels.
 

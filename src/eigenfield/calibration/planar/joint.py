@@ -23,7 +23,7 @@ from eigenfield.calibration.planar.kernels import occlusion_votes
 from eigenfield.calibration.planar.start import PlanarStart, irregularity, reverse_depth
 from eigenfield.core.progress import Progress
 from eigenfield.runtime.parallel import parallel_map
-from eigenfield.stereo.estimate import estimate_depth
+from eigenfield.stereo.estimate import depth_scale, estimate_depth
 from eigenfield.stereo.extend import extend_depth
 from eigenfield.stereo.reference_view import ReferenceView
 from eigenfield.stereo.refine import refine_depth
@@ -48,6 +48,7 @@ log = logging.getLogger("eigenfield.calibration")
 PLANAR_TAU_LEVELS = 15.0  # scale of the Cauchy loss, grey levels
 PLANAR_VISIBILITY_BIAS_PIXELS = 0.96  # distance behind the depth buffer at which a point still counts as visible
 PLANAR_SWEEP_STEP_PIXELS = 1.2  # distance between two labels of a sweep
+PLANAR_SWEEP_MAX_LABELS = 256  # labels of one sweep
 PLANAR_SMOOTH_PIXELS = 1.2  # distance within which neighbours are one surface
 PLANAR_LAST_SMOOTH_PIXELS = 0.6  # the same, in the last rounds
 # curvature of the cost, squared grey levels per squared pixel, at which smoothing gives a depth half weight
@@ -94,6 +95,19 @@ class PlanarArray:
     refined: bool
 
 
+def reference_margin(start: PlanarStart) -> int:
+    """Pixels by which the reference view is wider than a photograph on every side: the outermost camera's parallax."""
+    side = np.abs(start.places).max()
+    return int(np.ceil(side * max(abs(start.low), abs(start.high)) / 8)) * 8 + 8
+
+
+def start_scale(start: PlanarStart) -> float:
+    """The scale of photographs, at most 1, at which `refine_planar` takes bounded memory (`depth_scale`)."""
+    reference = start.model.reference_view(reference_margin(start))
+    matrices = start.model.matrices(reference, np.arange(len(start.parameters)), start.parameters)
+    return depth_scale(matrices, reference.shape, start.low, start.high)
+
+
 class _JointRefinement:
     """The state of the refinement: the parameters of all cameras and the depth map of the reference view."""
 
@@ -108,9 +122,7 @@ class _JointRefinement:
         apart = float(np.median(np.asarray(cKDTree(start.places).query(start.places, 2)[0])[:, 1]))
         self.dense = apart * (start.high - start.low) <= PLANAR_SWEEP_NEAR_MAX_PARALLAX_PIXELS
         self.bias = PLANAR_VISIBILITY_BIAS_PIXELS / self.extent
-        side = np.abs(start.places).max()
-        margin = int(np.ceil(side * max(abs(start.low), abs(start.high)) / 8)) * 8 + 8
-        self.reference = self.model.reference_view(margin)
+        self.reference = self.model.reference_view(reference_margin(start))
         self.half_size = halve_pictures(pictures)
         shape = self.reference.shape
         self.d = np.zeros(shape, np.float32)
@@ -163,6 +175,7 @@ class _JointRefinement:
         small = self.reference.at_half_resolution()
         matrices = HALF_FROM_FULL_INDEX @ self.model.matrices(small, views, self.parameters[views])
         step = min(coarser * PLANAR_SWEEP_STEP_PIXELS / self.extent_of(views), (self.high - self.low) / 64)
+        step = max(step, (self.high - self.low) / (PLANAR_SWEEP_MAX_LABELS - 1))
         labels = np.arange(self.low, self.high + step, step, dtype=np.float32)
         floor = ceiling = None
         if outer and self.dense:
