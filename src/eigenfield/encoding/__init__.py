@@ -16,7 +16,6 @@ from eigenfield.core.progress import Progress
 from eigenfield.encoding.options import EncodeOptions
 from eigenfield.encoding.target import Target
 from eigenfield.reconstruction import SurfaceOptions
-from eigenfield.runtime.files import make_folder
 from eigenfield.runtime.objects import find_objects, refuse_objects
 
 if TYPE_CHECKING:
@@ -89,6 +88,7 @@ def encode(
     from eigenfield.encoding.reach_target import encode_fitted
     from eigenfield.encoding.residual.make import check_residual, with_residual
     from eigenfield.gltf import encode_scene, read_scene
+    from eigenfield.runtime.files import make_folder
 
     refuse_unknown(changes, (*OPTION_NAMES, *SURFACE_NAMES), "encode")
     of_surface = {name: changes.pop(name) for name in SURFACE_NAMES if name in changes}

@@ -115,7 +115,8 @@ def export(
     chosen = _chosen_kind(output, kind, is_numbered(output))
     _check(chosen, output, options)
     scenes = [scene] if isinstance(scene, Scene | Clip | str | os.PathLike) else list(scene)
-    _refuse_own(scenes, output, chosen)
+    if overwrite:
+        _refuse_own(scenes, output, chosen)
     if chosen in ("app", "folder") and time is not None:
         raise OptionError("unused-option", f"--time is not for {chosen}", remedy="leave it out")
     if chosen == "app":

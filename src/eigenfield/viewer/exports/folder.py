@@ -95,7 +95,8 @@ def write_listing(folder: Path, kind: str, more: Mapping[str, Any], rights: Righ
     text = json.dumps(
         {**document, **more, "files": [*files, LISTING_FILE]}, indent=1, ensure_ascii=False, allow_nan=False
     )
-    (folder / LISTING_FILE).write_bytes((text + "\n").encode("utf-8", "replace"))  # names on disk may be no UTF-8
+    # names on disk may be no UTF-8
+    (folder / LISTING_FILE).write_text(text + "\n", encoding="utf-8", errors="replace", newline="\n")
 
 
 def _not_ours(folder: Path) -> str | None:
