@@ -10,7 +10,7 @@ from eigenfield.calibration import refine_planar, register_views, start_given, s
 from eigenfield.calibration.planar.array import ARRAY_PARAMETERS, ArrayModel
 from eigenfield.calibration.planar.joint import _JointRefinement
 from eigenfield.calibration.planar.kernels import normal_equations
-from eigenfield.calibration.planar.start import nominal_positions
+from eigenfield.calibration.planar.start import nominal_positions, resized_start
 from eigenfield.capture import GridLayout
 from eigenfield.core.errors import CaptureError
 from eigenfield.stereo.views import pack_pictures
@@ -147,6 +147,20 @@ def test_given_cameras_start_where_they_are(jittering):
     assert len(again) == SIZE**2
     for before, after in zip(cameras, again, strict=True):
         np.testing.assert_allclose(after.matrix, before.matrix, atol=1e-9)
+
+
+def test_an_array_is_the_same_for_photographs_at_another_size(even, names):
+    start = start_planar(even[0], layout(), names)
+    small = resized_start(start, (SIDE // 2, SIDE // 4))
+    x, y, d = np.array([10.0, 70, 140]), np.array([20.0, 70, 130]), np.linspace(start.low, start.high, 3)
+    points = start.model.reference_view(0).points(x, y, d)
+    assert (small.low, small.high) == pytest.approx((start.low / 8**0.5, start.high / 8**0.5))
+    again = small.model.reference_view(0).points((x + 0.5) / 2 - 0.5, (y + 0.5) / 4 - 0.5, d / 8**0.5)
+    assert_allclose(again, points, rtol=1e-9)
+    whole, reduced = (one.model.cameras(np.arange(3), one.parameters[:3]) for one in (start, small))
+    for camera, other in zip(whole, reduced, strict=True):
+        assert (other.width, other.height) == (SIDE // 2, SIDE // 4)
+        assert_allclose(other.project(points)[0], camera.project(points)[0] / [2, 4], rtol=1e-9)
 
 
 def test_derivatives_are_those_of_the_projection():

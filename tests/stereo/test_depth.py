@@ -256,7 +256,8 @@ def test_what_photographs_do_not_reach_is_not_taken_for_seen(two_layers):
     places = lying_and_upright(GRID**2, SIDE, 72)
     smeared = cropped(pictures, places)
     marked = mark_outside(smeared, places)
-    assert mark_outside(smeared, [(slice(0, SIDE),) * 2] * GRID**2) is smeared
+    for few in (0, 2):  # rows by which photographs of one camera may differ
+        assert mark_outside(smeared, [(slice(few, SIDE), slice(0, SIDE - few))] * GRID**2) is smeared
 
     def wrong(given):
         depth = estimate_depth(given, grid_matrices(), (SIDE, SIDE), (-2.0, 2.5), rounds=2)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from eigenfield.calibration import PlanarArray, PlanarStart, refine_planar, register_views, start_given, start_planar
 from eigenfield.calibration.planar.joint import reference_margin, start_scale
+from eigenfield.calibration.planar.start import resized_start
 from eigenfield.capture import Capture, LightField
 from eigenfield.capture.writers.save import save_calibration
 from eigenfield.core.camera import Camera, axis_angles
@@ -132,16 +133,15 @@ def align_array(
     inputs: list[Any] = [refine, known.tolist(), None if points is None else len(points)]
     must = run.settings.surface != "auto" or capture.light_field is None
 
-    def begin(size: Size) -> tuple[Pictures, Pictures, list[Camera] | None, PlanarStart]:
+    def read(size: Size) -> tuple[Pictures, Pictures]:
         pictures = read_depth_pictures(capture, size)
-        shown = pictures if len(known) == len(pictures) else pictures[known]
-        bases = None if capture.light_field is None else resized_cameras(capture, size)
-        cameras = [] if bases is None else [bases[index] for index in known]
-        return pictures, shown, bases, _start_array(capture.subset(known), shown, points, cameras)
+        return pictures, pictures if len(known) == len(pictures) else pictures[known]
 
     def build(folder: Path, must: bool) -> None:
         size = common_frame(capture)[1]
-        pictures, shown, bases, start = begin(size)
+        pictures, shown = read(size)
+        cameras = [] if capture.light_field is None else resized_cameras(capture, size)
+        start = _start_array(capture.subset(known), shown, points, [cameras[i] for i in known if cameras])
         if reference_margin(start) > ARRAY_MAX_MARGIN_RATIO * max(size):
             (folder / STAGE_WIDE_FILE).touch()
             if not must:
@@ -150,10 +150,12 @@ def align_array(
         if scale < 1:
             size = reduced(size, scale)
             log.info("depth: estimated at %d x %d pixels a photograph, to bound memory", *size)
-            pictures, shown, bases, start = begin(size)
+            start = resized_start(start, size)
+            pictures, shown = read(size)
         planar = refine_planar(shown, start, exact=not refine, progress=run.progress)
         if len(known) < len(pictures):
             new = np.setdiff1d(np.arange(len(pictures)), known)
+            bases = None if capture.light_field is None else resized_cameras(capture, size)
             positions = array_positions(capture)[:, ::-1] if start.exchanged else array_positions(capture)
             planar = register_views(planar, known, pictures[new], new, positions, bases, exact=not refine)
         light_field = _light_field(capture, planar)

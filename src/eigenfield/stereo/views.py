@@ -11,6 +11,7 @@ from eigenfield.stereo.taps import OUTSIDE_PIXEL
 
 Pictures = NDArray[np.uint8] | NDArray[np.uint32]  # (V, H, W, 3), or packed (V, H, W)
 PARALLAX_SECTORS = 8
+OUTSIDE_IGNORED_PIXELS = 2  # rows or columns by which photographs of one camera may differ
 
 
 def pack_pictures(pictures: Pictures) -> NDArray[np.uint32]:
@@ -37,15 +38,18 @@ def pack_pictures(pictures: Pictures) -> NDArray[np.uint32]:
 
 
 def mark_outside(pictures: Pictures, places: Sequence[tuple[slice, slice]]) -> Pictures:
-    """Packed pictures that know where photographs smaller than the frame end; the same if none is smaller.
+    """Packed pictures that know where photographs smaller than the frame end.
+
+    The same, if none is smaller by more than a row or two, as those of one camera may be.
 
     Args:
-        places: Rows and columns of each photograph, whose edges go on beyond them.
+        places: Rows and columns of each photograph.
     """
     outside = np.ones(pictures.shape[:3], np.bool_)
     for one, place in zip(outside, places, strict=True):
         one[place] = False
-    if not outside.any():
+    lacking = [outside.all(axis=axis).sum(axis=1).max(initial=0) for axis in (1, 2)]  # columns, rows
+    if max(lacking) <= OUTSIDE_IGNORED_PIXELS:
         return pictures
     packed = pack_pictures(pictures)
     packed[outside] |= OUTSIDE_PIXEL
@@ -88,7 +92,7 @@ def check_matrices(matrices: NDArray[np.float64], count: int) -> NDArray[np.floa
 
 
 def halve_pictures(pictures: Pictures) -> NDArray[np.uint32]:
-    """Packed pictures at half the size (rounded up), each pixel the mean of four; outside where all four are."""
+    """Packed pictures at half the size (rounded up), each pixel the mean of four; outside where one of them is."""
     packed = pack_pictures(pictures)
     count, height, width = packed.shape
     result = np.empty((count, (height + 1) // 2, (width + 1) // 2), np.uint32)
@@ -100,7 +104,7 @@ def halve_pictures(pictures: Pictures) -> NDArray[np.uint32]:
         beyond = packed[index] & OUTSIDE_PIXEL
         if beyond.any():
             beyond = np.pad(beyond, ((0, height % 2), (0, width % 2)), mode="edge")
-            result[index] |= beyond[::2, ::2] & beyond[1::2, ::2] & beyond[::2, 1::2] & beyond[1::2, 1::2]
+            result[index] |= beyond[::2, ::2] | beyond[1::2, ::2] | beyond[::2, 1::2] | beyond[1::2, 1::2]
     return result
 
 

@@ -223,6 +223,24 @@ def start_given(cameras: Sequence[Camera], low: float, high: float) -> PlanarSta
     )
 
 
+def resized_start(start: PlanarStart, size: tuple[int, int]) -> PlanarStart:
+    """The same array, its range of depths too, for photographs at another size.
+
+    Args:
+        size: (width, height).
+    """
+    model = start.model
+    across, down = size[0] / model.reference.width, size[1] / model.reference.height
+    ratio = math.sqrt(across * down)  # by which disparities grow
+
+    def resized(camera: Camera) -> Camera:
+        return replace(camera, K=np.diag([across, down, 1.0]) @ camera.K, width=size[0], height=size[1])
+
+    bases, reference = tuple(resized(base) for base in model.bases), resized(model.reference)
+    model = replace(model, bases=bases, reference=reference, scale=model.scale / ratio)
+    return replace(start, model=model, low=ratio * start.low, high=ratio * start.high)
+
+
 def reverse_depth(start: PlanarStart) -> PlanarStart:
     """The same motion with near and far exchanged."""
     parameters = start.parameters.copy()

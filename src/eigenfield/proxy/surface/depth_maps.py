@@ -167,12 +167,12 @@ def _stack_pictures(job: DepthJob, pictures: Mapping[int, WorkingPicture] | Sequ
     unit = 1 / (reference_picture.camera.K[0, 0] * max(float(np.median(across)), 1e-12))
     reference = ReferenceView.with_margin(reference_picture.camera, 0, job.span[0], unit)
     height, width = max(p.pixels.shape[0] for p in used), max(p.pixels.shape[1] for p in used)
-    sizes = [(picture.pixels.shape[0], picture.pixels.shape[1]) for picture in used]
-    around = [((0, height - h), (0, width - w), (0, 0)) for h, w in sizes]
-    stack = np.stack([np.pad(one.pixels, more, mode="edge") for one, more in zip(used, around, strict=True)])
+    stack = np.zeros((len(used), height, width, 3), np.uint8)
+    places = [(slice(picture.pixels.shape[0]), slice(picture.pixels.shape[1])) for picture in used]
+    for slot, place, picture in zip(stack, places, used, strict=True):
+        slot[place] = picture.pixels
     matrices = view_matrices(reference, [picture.camera for picture in used])
-    marked = mark_outside(stack, [(slice(h), slice(w)) for h, w in sizes])
-    return _Stack(reference, (job.span[1] - job.span[0]) / unit, marked, matrices)
+    return _Stack(reference, (job.span[1] - job.span[0]) / unit, mark_outside(stack, places), matrices)
 
 
 def _first_map(job: DepthJob, pictures: Mapping[int, WorkingPicture] | Sequence[WorkingPicture]) -> _FirstMap:
