@@ -36,9 +36,7 @@ class Field:
         """View-plane coordinates, from -1 to 1, of a point in OBJ's axes."""
         plane = self.listing["viewPlane"]
         extent = np.array(plane["extent"])
-        away = np.array([plane.get("right", (1, 0, 0)), plane.get("up", (0, 1, 0))]) @ np.subtract(
-            point, plane["origin"]
-        )
+        away = np.array([plane["right"], plane["up"]]) @ np.subtract(point, plane["origin"])
         return np.divide(away, extent, out=np.zeros(2), where=extent > 0).clip(-1, 1)
 
     def texture(self, place):
