@@ -195,6 +195,22 @@ def test_density_is_texels_per_pixel():
         texels_per_pixel(PLANE, camera(z=1.0))
 
 
+def test_density_of_a_floor_that_runs_on_behind_the_camera():
+    """As of the part before it, cut into small triangles."""
+
+    def floor(z):
+        u, v = np.meshgrid(np.linspace(0, 1, 2), (np.array(z) + 4) / 14)
+        vertices = np.stack([10 * u - 5, np.full_like(u, 0.5), 14 * v - 4], axis=-1).reshape(-1, 3)
+        corner = 2 * np.arange(len(z) - 1)[:, None]
+        faces = (corner[:, None] + [[0, 1, 3], [0, 3, 2]]).reshape(-1, 3)
+        uv = np.stack([u, v], axis=-1).reshape(-1, 2).astype(np.float32)
+        return Mesh(vertices.astype(np.float32), faces.astype(np.int32), uv)
+
+    eye = camera(z=0.0, size=96)
+    whole = texels_per_pixel(floor([-4.0, 10.0]), eye)
+    assert whole == pytest.approx(texels_per_pixel(floor(np.linspace(0.2, 10, 400)), eye), rel=0.02)
+
+
 def test_an_atlas_without_a_texel_is_refused():
     tiny = mesh_of(square(-0.5, 0.5, 0, (0.01, 0.01), (0.02, 0.02)))
     with pytest.raises(ProxyError, match="larger --atlas"):

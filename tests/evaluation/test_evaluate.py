@@ -297,6 +297,20 @@ def test_photographs_with_other_endings_are_matched_by_stem(scene, tmp_path):
     assert found == {index: index + 1 for index in range(1, 9)}
 
 
+def test_photographs_from_other_places_are_said(scene, tmp_path, caplog):
+    """Another world and scale are no other places."""
+    capture = write_capture(scene, tmp_path / "c")
+    turn = np.array([[0.0, 0, 1], [0, 1, 0], [-1, 0, 0]])
+    for moved, said in ((lambda c: 7 * turn @ c + 3, False), (lambda c: c * [1, 3, 1], True)):
+        views = [
+            dataclasses.replace(view, camera=dataclasses.replace(cam := view.camera, t=-cam.R @ moved(cam.centre)))
+            for view in capture.views
+        ]
+        caplog.clear()
+        match_photographs(named_as_files(scene), dataclasses.replace(capture, views=tuple(views)))
+        assert ("not the one that was encoded" in caplog.text) == said
+
+
 def test_a_camera_that_sees_nothing_has_no_figures(scene, tmp_path):
     away = scene.rig.cameras[0]
     about = np.diag([-1.0, 1.0, -1.0])

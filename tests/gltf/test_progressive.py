@@ -77,8 +77,10 @@ def test_a_file_cut_short_is_no_good_file(data, tmp_path):
     assert [(one.severity, one.code) for one in validate(path)] == [("error", "truncated")]
     sizes = parts(path)
     assert sizes["total"] == path.stat().st_size and 0 < sizes["textures"] < parts_of(data, tmp_path)["textures"]
-    with pytest.raises(FormatError, match="copy or download"):
-        store_scores(path, {})
+    for write in (lambda: store_scores(path, {}), lambda: ef.save(ef.load(path), tmp_path / "other.glb")):
+        with pytest.raises(FormatError, match="copy or download"):
+            write()
+    assert list(tmp_path.glob("other*")) == []
 
 
 def parts_of(data, folder):

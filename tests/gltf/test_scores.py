@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import numpy as np
 import pytest
 import trimesh
 
 from eigenfield import gltf as scene_format
 from eigenfield.coding import limits
-from eigenfield.core.errors import FormatError
+from eigenfield.core.errors import FormatError, OutputError
 from eigenfield.gltf import save
 from support import glb_surgery
 from support.scenes import tiny_scene
@@ -29,6 +32,14 @@ def test_scores_are_stored_beside_untouched_pictures(tmp_path):
         assert scene_format.load(path).scores == scores
     assert [f.code for f in scene_format.validate(path)] == ["unknown-key"]
     assert list(tmp_path.iterdir()) == [path]
+
+
+@pytest.mark.parametrize("value", [np.float32(1), float("nan"), {1, 2}, "\ud800"])
+def test_what_is_no_json_is_refused(tmp_path, value):
+    for name in ("scores", "settings"):
+        with pytest.raises(OutputError, match=f"{name} are no JSON") as caught:
+            save(replace(tiny_scene(3, 1), **{name: {"x": value}}), tmp_path / "scene.glb")
+        assert caught.value.code == "scene-values" and list(tmp_path.iterdir()) == []
 
 
 def test_scores_go_through_a_link(tmp_path):

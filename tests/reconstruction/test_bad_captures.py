@@ -142,6 +142,13 @@ def test_a_view_that_does_not_belong_is_named(calibrated, tmp_path, caplog, kind
     assert warnings_of(folder, caplog, hold_out="view_02.png", fit=fit) == []
 
 
+def test_black_photographs_have_no_contrast_to_agree_on(calibrated, tmp_path, caplog):
+    folder = copied(calibrated, tmp_path)
+    for path in (folder / "images").iterdir():
+        Image.fromarray(np.zeros((56, 64, 3), np.uint8)).save(path)
+    assert warnings_of(folder, caplog) == []
+
+
 @BOTH
 def test_photographs_that_agree_nowhere_are_said(calibrated, tmp_path, caplog, fit):
     folder, random = copied(calibrated, tmp_path), np.random.default_rng(2)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 
 import numpy as np
 import pytest
@@ -13,6 +12,7 @@ from eigenfield.proxy.surface import multiview
 from eigenfield.runtime.executor import open_executor
 from eigenfield.runtime.parts import Parts
 from support.captures import write_capture
+from support.motion import photographed
 
 
 def build_number(folder, number):
@@ -104,13 +104,11 @@ def test_workers_that_make_no_sense_are_one_line(run, tmp_path, words):
 
 
 @pytest.mark.slow
-def test_a_capture_from_all_sides_gives_the_same_bytes(run, data, tmp_path):
-    few = shutil.ignore_patterns("templeSR001[0-6].*", "templeSR000[7-9].*")  # a third of the ring
-    shutil.copytree(data / "temple_ring16", tmp_path / "temple", ignore=few)
-    for name, words in (("here", []), ("there", ["--workers", 2])):
-        ran = run(
-            "encode", tmp_path / "temple", "--fit", "none", "--atlas", 256, "-q", "-o", tmp_path / f"{name}.glb", *words
-        )
+def test_a_surface_from_all_sides_gives_the_same_bytes(run, tmp_path):
+    photographed(tmp_path / "photos")
+    words = ["--surface", "poisson", "--fit", "none", "--atlas", 256, "-q"]
+    for name, more in (("here", []), ("there", ["--workers", 2])):
+        ran = run("encode", tmp_path / "photos", "-o", tmp_path / f"{name}.glb", *words, *more)
         assert ran.code == 0, ran.err
     assert (tmp_path / "here.glb").read_bytes() == (tmp_path / "there.glb").read_bytes()
     assert not (tmp_path / "there.work" / "parts").exists()

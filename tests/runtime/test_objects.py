@@ -66,6 +66,17 @@ def test_a_path_is_no_address():
     assert find_objects(Path("memory://lab/photos")).address == "memory://lab/photos"
 
 
+def test_a_copy_is_made_again_when_its_object_changes(store):
+    store.pipe_file("/lab/p.off", b"one")
+    before = local_copy("memory://lab/p.off")
+    assert local_copy("memory://lab/p.off") == before
+    store.pipe_file("/lab/p.off", b"two, longer")
+    assert local_copy("memory://lab/p.off").read_bytes() == b"two, longer" and before.read_bytes() == b"one"
+    store.rm_file("/lab/p.off")
+    with pytest.raises(OptionError, match="no such bucket or object"):
+        local_copy("memory://lab/p.off")
+
+
 @pytest.mark.parametrize("name", ["../evil.txt", "..", "a/../../evil.txt", "a\\b", "a\0b", "../evil/a.txt"])
 def test_an_object_is_copied_to_its_own_folder_alone(store, name):
     """Whatever the names in a bucket are, and where one of them is taken for a capture."""
@@ -156,10 +167,11 @@ def test_encode_reads_and_writes_the_same_bytes_as_on_a_disk(store, run, tmp_pat
     put(folder, "memory://lab/nine")
     assert run(*encode_words(folder, tmp_path / "here.glb")).code == 0
     ran = run(*encode_words("memory://lab/nine", "memory://lab/there.glb"))
-    assert ran.code == 0 and ran.out.startswith("memory:"), ran.err
+    assert ran.code == 0 and ran.out.startswith("memory://lab/there.glb: "), ran.err
     assert store.cat_file("/lab/there.glb") == (tmp_path / "here.glb").read_bytes()
     assert ef.load("memory://lab/there.glb").rig.names == ef.load(tmp_path / "here.glb").rig.names
-    assert run("evaluate", "memory://lab/there.glb", "memory://lab/nine", "-q").code == 0
+    assert run("evaluate", "memory://lab/there.glb", "memory://lab/nine", "-q", "--store").code == 0
+    assert "uv" in ef.load("memory://lab/there.glb").scores
     code, _, err = run(*encode_words("memory://lab/nine", "memory://lab/there.glb"))
     assert code == 2 and "memory://lab/there.glb: exists already" in err
 

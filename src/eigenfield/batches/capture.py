@@ -48,13 +48,13 @@ def look_at(job: CaptureJob, output: Path) -> dict[str, Any]:
     Raises:
         CaptureError, ProxyError, OptionError: The capture, or an option of it, cannot be used.
     """
+    if job.proxy is not None and not is_sequence(Path(job.proxy)):
+        refuse_no_mesh(Path(job.proxy))
     capture = None if _in_store(job) or job.place.clip is not None else _opened(job, output)
     key = stage_key([_inputs(job, capture), installed()])
     record = _finished(output / SCENES_FOLDER / f"{job.name}-{key}")
     if record is not None:
         return {"key": key, "seconds": 0.0, "memory": 0.0, "record": record}
-    if job.proxy is not None and not is_sequence(Path(job.proxy)):
-        refuse_no_mesh(Path(job.proxy))
     if job.place.clip is not None:
         footage = _footage(job, output)
         cost = expected_cost(footage.instant(len(footage) // 2), job.options, job.surface, threads())
@@ -180,7 +180,8 @@ def _make_still(job: CaptureJob, output: Path, work: Path, scene_file: Path, pag
     encoded = time.monotonic()
     scene = load(scene_file)
     figures = evaluate(scene, capture, path=scene_file, png_maps="none", progress=None)
-    store_scores(scene_file, {**scene.scores, **stored_scores(figures)})
+    if job.options.target is None or job.options.target.size is None:  # which leaves no room for them
+        store_scores(scene_file, {**scene.scores, **stored_scores(figures)})
     write_guests_page(scene, page, title=job.name)
     return (
         encoded,

@@ -60,12 +60,13 @@ class CaptureJob:
         return [self.path, *(os.fspath(path) for path in named if path is not None)]
 
 
-def read_jobs(source: Path | Sequence[Path], shared: Mapping[str, Any]) -> list[CaptureJob]:
+def read_jobs(source: Path | Sequence[Path], shared: Mapping[str, Any], output: Path | None = None) -> list[CaptureJob]:
     """The captures of a batch, whose names differ.
 
     Args:
         source: A TOML file, a folder of captures, or captures; each may lie in an object store.
         shared: Options of all captures by name; they go before those in a file, and a capture's own before both.
+        output: A folder that holds no captures, though it may lie among them.
 
     Raises:
         OptionError: `batch-file`, `batch-empty`, `batch-names`, `batch-option`, or of a capture's options.
@@ -76,7 +77,8 @@ def read_jobs(source: Path | Sequence[Path], shared: Mapping[str, Any]) -> list[
         rows, file_options = _read_toml(source)
         base, first, shared = absolute_place(source).parent, source, {**file_options, **shared}
     elif source.is_dir() or find_objects(source):
-        rows, base, first = [{"path": str(path)} for path in captures_in(source)], Path(), source
+        found = [path for path in captures_in(source) if absolute_place(path) != output]
+        rows, base, first = [{"path": str(path)} for path in found], Path(), source
     else:
         message = "is no folder of captures and no .toml" if source.exists() else "does not exist"
         raise OptionError(

@@ -84,7 +84,7 @@ def batch(
         WorkerError: There are no workers, or they are lost.
     """
     given = Path(source) if isinstance(source, str | os.PathLike) else [Path(one) for one in source]
-    jobs = read_jobs(given, options)
+    jobs = read_jobs(given, options, None if output is None else absolute_place(output))
     folder = _output(given, output)
     records: dict[int, dict[str, Any]] = {}
     taken_up = 0
@@ -93,7 +93,8 @@ def batch(
             log.warning("dashboard: %s", pool.dashboard)
         refuse_unshared(pool, folder)
         for place in {_shared_place(job.path) for job in jobs}:
-            refuse_unseen(pool, place)
+            if find_objects(place) or place.exists():  # else it has its line in the table
+                refuse_unseen(pool, place)
         try:
             bar = _Bar(len(jobs), progress)
             looks = _looked(pool, jobs, folder, records, bar)

@@ -9,6 +9,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eigenfield.capture.lightfield import LightField
 from eigenfield.capture.photographs.lens import Lens
@@ -21,8 +22,11 @@ from eigenfield.core.scene import Scene
 
 log = logging.getLogger(__name__)
 
+OTHER_CALIBRATION = "%s: the capture's calibration is not the one that was encoded; the scene's own cameras are used"
+
 SCENE_LENS_MODELS = ("brown", "fisheye", "rational", "metashape", "metashape-equidistant", "metashape-equisolid")
 SCENE_MAX_CALIBRATION_PIXELS = 0.5  # two calibrations may differ by this much without a warning
+SCENE_MAX_DISTANCE_RATIO = 0.1  # of the mean distance of two cameras, by which that of any two may differ
 
 
 def with_scene_cameras(scene: Scene, photographs: Capture) -> LightField:
@@ -94,12 +98,20 @@ def match_photographs(scene: Scene, capture: LightField) -> dict[int, int]:
     for index, view in photographs.items():
         K, other = scene.rig.cameras[index].K, capture.views[view].camera.K
         if np.abs(K - other).max() > SCENE_MAX_CALIBRATION_PIXELS:
-            log.warning(
-                "%s: the capture's calibration is not the one that was encoded; the scene's own cameras are used",
-                scene.rig.names[index],
-            )
-            break
+            log.warning(OTHER_CALIBRATION, scene.rig.names[index])
+            return photographs
+    ours = [scene.rig.cameras[index].centre for index in photographs]
+    theirs = [capture.views[view].camera.centre for view in photographs.values()]
+    off = np.abs(_relative_distances(np.array(ours)) - _relative_distances(np.array(theirs)))
+    if off.max() > SCENE_MAX_DISTANCE_RATIO:
+        log.warning(OTHER_CALIBRATION, scene.rig.names[[*photographs][int(off.sum(axis=1).argmax())]])
     return photographs
+
+
+def _relative_distances(centres: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n, n) between the cameras, in their mean: the same in every world and at every scale."""
+    distances = np.linalg.norm(centres[:, None] - centres[None], axis=2)
+    return distances / max(float(distances.mean()), 1e-300)
 
 
 def _same_names(scene: Scene, names: Sequence[str]) -> dict[int, int]:

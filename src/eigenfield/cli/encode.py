@@ -293,7 +293,7 @@ def last_lines(output: Path, scene: Scene) -> list[str]:
     figures = "".join(f", {words}" for words in score_words(scene.scores))
     word = verdict_of_scores(scene.scores) or "no verdict: `eigenfield evaluate SCENE CAPTURE` measures more"
     return [
-        f"{output}: {total / 1e3:,.0f} kB, {smaller} the photographs{figures}",
+        f"{address_of(output)}: {total / 1e3:,.0f} kB, {smaller} the photographs{figures}",
         str(word),
         f"look around in it: eigenfield view {shell_word(address_of(output))}",
     ]

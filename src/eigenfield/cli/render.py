@@ -22,6 +22,7 @@ from eigenfield.cli.drawing import (
 )
 from eigenfield.cli.progress import progress_bars
 from eigenfield.core.errors import OptionError
+from eigenfield.runtime.objects import address_of
 
 
 @click.command(
@@ -94,7 +95,7 @@ def command(
             scene, time, {"at": at, "camera": camera}, path, frames, output, fps if given_rate else None,
             (stereo, baseline), overwrite, quiet, picture,
         )  # fmt: skip
-        note(f"wrote {output}: {what}", quiet)
+        note(f"wrote {address_of(output)}: {what}", quiet)
         return
     if time is not None and time.several:
         _render_over_time(scene, time, {"at": at, "camera": camera}, path, output, fps, overwrite, quiet, picture)
@@ -106,7 +107,7 @@ def command(
         job = RenderJob(load(scene, seconds), **picture)
         with progress_bars(quiet) as progress:
             write_flight(job, points, output, fps, overwrite=overwrite, progress=progress)
-        note(f"wrote {output}: {len(points)} pictures", quiet)
+        note(f"wrote {address_of(output)}: {len(points)} pictures", quiet)
         return
     refuse_existing(output, overwrite)
     job = RenderJob(load(scene, seconds), **picture)
@@ -117,7 +118,7 @@ def command(
         chosen = viewpoint(job.scene, at=at, camera=camera, weights=job.weights)
         data = job.png(*chosen, viewpoint_colour(job.scene, at=at, camera=camera))
     write_bytes(output, data, overwrite=overwrite)
-    note(f"wrote {output}", quiet)
+    note(f"wrote {address_of(output)}", quiet)
 
 
 def _render_over_time(
@@ -137,7 +138,7 @@ def _render_over_time(
     rate = fps if given else clip.timeline.rate
     with progress_bars(quiet) as progress:
         write_clip_flight(clip, frames, places, output, rate, overwrite=overwrite, progress=progress, **picture)
-    note(f"wrote {output}: {len(frames)} pictures", quiet)
+    note(f"wrote {address_of(output)}: {len(frames)} pictures", quiet)
 
 
 def _render_stereo(

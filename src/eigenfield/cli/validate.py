@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 
 from eigenfield.cli.common import PATH, common_options, echo_json
+from eigenfield.runtime.objects import address_of
 
 
 @click.command(
@@ -27,9 +28,9 @@ def command(context: click.Context, files: tuple[Path, ...], as_json: bool, quie
     """Check scene FILEs, pictures included, and list every finding: errors, warnings, informations."""
     from eigenfield.gltf import validate
 
-    found = {file: validate(file) for file in files}
+    found = {address_of(file): validate(file) for file in files}
     if as_json:
-        echo_json([{"file": str(file), "findings": [asdict(f) for f in findings]} for file, findings in found.items()])
+        echo_json([{"file": file, "findings": [asdict(f) for f in findings]} for file, findings in found.items()])
     else:
         for file, findings in found.items():
             if not findings and not quiet:

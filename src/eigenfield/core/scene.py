@@ -83,6 +83,7 @@ class Scene:
             coded to, each under the key of its content. `save` writes them byte for byte for parts that are unchanged,
             and codes the others. Parts that are not coded, or that a file holds as plain numbers, have none.
         rights: Title, author, licence and source, as far as somebody said them.
+        cut_off: Whether the file that it was read from ended too early, so that something of it is missing.
     """
 
     proxy: Proxy
@@ -94,6 +95,7 @@ class Scene:
     residual: Residual | None = None
     payloads: Payloads = field(default_factory=Payloads)
     rights: Rights = field(default_factory=Rights)
+    cut_off: bool = False
     _derived: dict[str, Any] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property

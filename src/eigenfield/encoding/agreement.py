@@ -16,6 +16,7 @@ log = logging.getLogger("eigenfield.encode")
 OUTLIER_MIN_DEVIATIONS = 5.0  # robust standard deviations
 OUTLIER_MIN_RATIO = 0.6  # of the typical difference
 OUTLIER_MIN_GREY_LEVELS = 4.0
+AGREEMENT_MIN_GREY_LEVELS = 1.0  # of the photographs' contrast, where it is asked how much of it the mean holds
 NORMAL_DEVIATION_RATIO = 1.4826  # standard deviation of a normal distribution over its median deviation
 AGREEMENT_MIN_CONTRAST_RATIO = 0.5  # of the mean texture to the photographs; real captures: 0.95, three of noise: 0.33
 AGREEMENT_NEIGHBOURS = 24  # nearest observations: errors that they share, as vignetting, are no fault
@@ -62,7 +63,10 @@ def warn_of_disagreement(
         )  # fmt: skip
     shared = 1 - float(squares.sum()) / total if total > 0 else 1.0
     log.info("%.1f grey levels from the mean texture, which holds %.0f %% of the contrast", typical, 100 * shared)
-    if shared < AGREEMENT_MIN_CONTRAST_RATIO and not outliers:  # which spoil the mean for all
+    contrast = 255 * np.sqrt(total / max(float(seen.sum()) * channels, 1.0))
+    if (
+        shared < AGREEMENT_MIN_CONTRAST_RATIO and contrast > AGREEMENT_MIN_GREY_LEVELS and not outliers
+    ):  # which spoil the mean for all
         words = "the photographs hardly agree on the proxy: their mean holds %.0f %% of their contrast; look at "
         log.warning(
             words + "cameras and mesh (`eigenfield inspect CAPTURE --proxy MESH --overlay overlay.png`)", 100 * shared

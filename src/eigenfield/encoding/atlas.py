@@ -89,18 +89,40 @@ def texels_per_pixel(mesh: Mesh, camera: Camera) -> float:
     faces, pixels = np.unique(seen[seen >= 0], return_counts=True)
     uv = mesh.uv[mesh.faces[faces]].astype(np.float64)
     flat, depth = camera.project(mesh.vertices[mesh.faces[faces]].reshape(-1, 3))
-    usable = (depth.reshape(-1, 3) > 0).all(axis=1)
+    ahead = (depth.reshape(-1, 3) > 0).all(axis=1)
     area = np.abs(signed_areas(flat.reshape(-1, 3, 2)))
-    usable &= area > 0
-    if not usable.any():
+    usable = ahead & (area > 0)
+    ratio, mass = np.sqrt(np.abs(signed_areas(uv))[usable] / area[usable]), pixels[usable]
+    if not ahead.all():  # a floor, or a wall, that runs on behind the camera: by its pixels
+        near = _ratios_of_pixels(mesh, camera, np.where(np.isin(seen, faces[~ahead]), seen, -1))
+        ratio, mass = np.concatenate([ratio, near]), np.concatenate([mass, np.ones(len(near), mass.dtype)])
+    if not len(ratio):
         message = "the camera nearest the centre of the array sees nothing of the mesh"
         remedy = "bring the mesh into the frame of the cameras "
         remedy += "(`eigenfield inspect CAPTURE --proxy MESH --overlay overlay.png` shows both)"
         raise ProxyError("proxy-not-seen", message, remedy=remedy)
-    ratio = np.sqrt(np.abs(signed_areas(uv))[usable] / area[usable])
     order = np.argsort(ratio, kind="stable")
-    mass = np.cumsum(pixels[usable][order])
-    return float(ratio[order][np.searchsorted(mass, mass[-1] / 2)])
+    passed = np.cumsum(mass[order])
+    return float(ratio[order][np.searchsorted(passed, passed[-1] / 2)])
+
+
+def _ratios_of_pixels(mesh: Mesh, camera: Camera, seen: NDArray[np.int32]) -> NDArray[np.float64]:
+    """(n,) sqrt(UV area / pixel area) in each pixel whose triangle `seen` (H, W) names, -1 for none.
+
+    A pixel's place in texture coordinates is a homography of the pixel, whose area changes by its determinant and the
+    third power of its last row.
+    """
+    assert mesh.uv is not None
+    row, column = np.nonzero(seen >= 0)
+    corners = mesh.faces[seen[row, column]]
+    flat = np.stack([column + 0.5, row + 0.5, np.ones(len(row))], axis=1)
+    shown = (mesh.vertices.astype(np.float64) @ camera.R.T + camera.t) @ camera.K.T  # homogeneous pixels
+    to_corners = np.linalg.inv(shown[corners].transpose(0, 2, 1))
+    last = (to_corners.sum(axis=1) * flat).sum(axis=1)
+    uv = mesh.uv[corners].astype(np.float64)
+    whole = 2 * np.abs(signed_areas(uv)) * np.abs(np.linalg.det(to_corners))
+    ratio: NDArray[np.float64] = np.sqrt(whole / np.abs(last) ** 3)
+    return ratio
 
 
 def atlas_side(mesh: Mesh, camera: Camera, density: float, pixels: int | None = None) -> int:

@@ -24,6 +24,7 @@ from eigenfield.gltf.streams import streams
 from eigenfield.gltf.strict_json import Value
 from eigenfield.gltf.write import encode_scene
 from eigenfield.runtime.files import atomic_writer
+from eigenfield.runtime.objects import find_objects
 
 PARTS = ("mean", "textures", "weights", "mesh", "opacity", "residual")  # that `parts` lists, beside `total` and `other`
 
@@ -140,7 +141,8 @@ def store_scores(path: str | os.PathLike[str], scores: Mapping[str, Any]) -> Non
     Raises:
         OutputError: The file cannot be written.
     """
-    target = Path(os.path.realpath(scene_file(path)))  # a link stays a link
+    target = Path(scene_file(path))
+    target = target if find_objects(target) else Path(os.path.realpath(target))  # a link stays a link
     with name_file_in_errors(path), contextlib.ExitStack() as opened:
         source = opened.enter_context(open_source(target))
         glb = parse_glb(source)

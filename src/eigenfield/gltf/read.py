@@ -119,7 +119,8 @@ def _scene_of(data: bytes | ByteSource, pictures: bool) -> Scene:
         log.warning("the file ends within its residual: captured views go without (copy or download it again)")
     planes = [_decode_plane(plane) for plane in layout.planes or ()] if pictures else []
     sheets = _decode_sheets(layout) if pictures else None
-    return _scene(layout, planes, sheets, _preview(document, layout))
+    scene = _scene(layout, planes, sheets, _preview(document, layout))
+    return replace(scene, cut_off=True) if layout.lost or document.glb.missing else scene
 
 
 def _preview(document: Document, layout: FileLayout) -> Payload | None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterable
 from pathlib import Path
@@ -17,7 +18,7 @@ def check_writable(scene: Scene, path: Path | None) -> None:
     """Check a scene against the limits of every reader.
 
     Raises:
-        OutputError: `scene-limit`, `camera-name`.
+        OutputError: `scene-limit`, `camera-name`, `scene-values`.
         FormatError: `sheets-opacity`.
     """
 
@@ -59,6 +60,12 @@ def check_writable(scene: Scene, path: Path | None) -> None:
     for count, most, name in counts:
         if count > most:
             refuse(f"{count} {name}")
+    for name, values in (("settings", scene.settings), ("scores", scene.scores)):
+        try:
+            json.dumps(values, allow_nan=False, ensure_ascii=False).encode()
+        except (TypeError, ValueError, RecursionError) as error:  # of texts, UnicodeEncodeError
+            message, remedy = f"{name} are no JSON: {error}", "use plain numbers, texts, lists and dictionaries"
+            raise OutputError("scene-values", message, path=path, remedy=remedy) from None
     for name in scene.rig.names:
         if len(name) > limits.MAX_NAME or not is_printable(name):
             message = f"the name {name!r} cannot be kept"

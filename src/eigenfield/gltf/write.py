@@ -16,7 +16,7 @@ from eigenfield.coding.stacking import DEFAULT_CODEC, PICTURES, check_codec, dim
 from eigenfield.core.appearance import Plane
 from eigenfield.core.arguments import checked
 from eigenfield.core.clip import Clip
-from eigenfield.core.errors import OptionError, OutputError
+from eigenfield.core.errors import FormatError, OptionError, OutputError
 from eigenfield.core.mesh import Mesh
 from eigenfield.core.notebook import notebook_progress
 from eigenfield.core.payloads import Payload, PicturePayload
@@ -89,11 +89,15 @@ def save(
     Raises:
         OutputError: `output-exists`, `disk-full`, `file-too-large`, `scene-limit`, ...
         OptionError: `codec`, `codec-missing`, `quality`, `fallback`; `clip-groups`: the clip is of no coded groups.
-        FormatError: The scene is inconsistent in itself. Nothing is written.
+        FormatError: The scene is inconsistent in itself, or was read from a file that ends too early (`truncated`).
+            Nothing is written.
     """
     path = Path(path)
     refuse_output(path, overwrite)
     made = scene if isinstance(scene, Scene | Clip) else load_any(scene)
+    if isinstance(made, Scene) and made.cut_off:
+        message, remedy = "the scene's file ended before all of it was there", "copy or download that file again"
+        raise FormatError("truncated", message, path=path, remedy=remedy)
     if fallback is not None:
         made = with_fallback(made, fallback)
     if isinstance(made, Clip):

@@ -58,8 +58,8 @@ def render_many(
         resolution: (width, height), and the next five: as of `render`.
         weights: `delaunay`, `nearest3` or `bilinear`.
         filter: `bilinear` or `bicubic`.
-        background: One number, or one for each channel.
-        textures: Number of eigen textures of each basis.
+        background: A sequence of one number for all channels, or of one for each.
+        textures: How many eigen textures of each basis at most.
         samples: k of k x k samples a pixel.
         progress: Reports each picture; by default a bar in a notebook.
 

@@ -27,7 +27,7 @@ STAMP_KEYS = "ETag", "etag", "LastModified", "last_modified", "mtime", "created"
 _LIBRARIES = "botocore", "aiobotocore", "aiohttp", "gcsfs", "google", "azure"  # whose errors are about the store
 
 _copied = contextlib.ExitStack()
-_copies: dict[str, Path] = {}
+_copies: dict[tuple[str, str], Path] = {}  # by address and what the store says of it
 
 
 def find_objects(path: str | os.PathLike[str]) -> Objects | None:
@@ -193,9 +193,9 @@ class Objects:
 
 
 def local_copy(path: str | os.PathLike[str]) -> Path:
-    """`path` as it is, or for an address a copy on this machine, made once.
+    """`path` as it is, or for an address a copy on this machine, made once, and again when the store has other objects.
 
-    The copy keeps its name, and lasts until `remove_copies` or the end of the process.
+    A copy keeps its name, and lasts until `remove_copies` or the end of the process.
 
     Raises:
         OptionError, OutputError: As `Objects.copy_to`.
@@ -203,16 +203,18 @@ def local_copy(path: str | os.PathLike[str]) -> Path:
     objects = find_objects(path)
     if objects is None:
         return Path(path)
-    if objects.address not in _copies:
-        place = _new_folder() / _inside(PurePosixPath(objects.root).name)
+    name = _inside(PurePosixPath(objects.root).name)
+    key = objects.address, repr(objects.stamps())
+    if key not in _copies:
+        place = _new_folder() / name
         objects.copy_to(place)
-        _copies[objects.address] = place
-    return _copies[objects.address]
+        _copies[key] = place
+    return _copies[key]
 
 
 def local_folder(objects: Objects) -> Path:
     """The folder of this machine in which the stages below an address are built, one for each address."""
-    key = f"{objects.address}/"
+    key = objects.address, ""
     if key not in _copies:
         _copies[key] = _new_folder()
     return _copies[key]
@@ -237,9 +239,9 @@ def name_address(error: EigenfieldError) -> EigenfieldError:
     """The error with an address for its path as people write it, also where that is of a copy on this machine."""
     if error.path is None:
         return error
-    for address, place in _copies.items():
+    for (address, _), place in _copies.items():
         if Path(error.path).is_relative_to(place):
-            error.path = f"{address.rstrip('/')}/{Path(error.path).relative_to(place).as_posix()}".removesuffix("/.")
+            error.path = f"{address}/{Path(error.path).relative_to(place).as_posix()}".removesuffix("/.")
             break
     found = split_address(error.path)
     if found is not None:

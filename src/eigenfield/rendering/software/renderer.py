@@ -193,8 +193,8 @@ def render(
         resolution: (width, height). Default: the camera's own.
         weights: `delaunay`, `nearest3` or `bilinear`.
         filter: `bilinear` or `bicubic` (Catmull-Rom).
-        background: One number, or one for each channel, 0..1.
-        textures: Number of eigen textures of each basis. Default: all.
+        background: A sequence of one number for all channels, or of one for each, 0..1.
+        textures: How many eigen textures of each basis at most. Default: all.
         samples: k of k x k samples a pixel, 1 to 16. Default: one, but four at edges, or more in a picture smaller than
             the photographs.
 
