@@ -75,7 +75,10 @@ function start(): void {
   const compared = createCompared(viewer);
   const playbar = createPlaybar(viewer);
   const help = createHelp(config.version);
-  const headset = createHeadset(viewer, () => update());
+  const headset = createHeadset(viewer, (inside) => {
+    update();
+    if (!inside) fit(); // the window may be another one by now
+  });
   const draft = createDraft(viewer, headset.presenting);
   const tilt = createTilt(viewer, () => update());
 
