@@ -140,7 +140,10 @@ test("a divider between drawing and photograph, by hand and by keys; a scale on 
 
 test("without photographs the comparison is off, and says how to have it", async () => {
   const { page, close } = await openViewer(browser, "scene.glb", { width: 900, height: 600 });
-  await state(page);
+  await page.evaluate(() => window.eigenfield.goTo(0.3, 0.1));
+  for (const key of [" ", "b"]) await page.keyboard.press(key);
+  const free = await state(page);
+  assert.deepEqual([free.x, free.y, free.camera], [0.3, 0.1, null], "the eye stays where it is");
   await page.keyboard.press("]");
   await page.keyboard.press(" ");
   await page.keyboard.press("4");
