@@ -173,8 +173,10 @@ test("?load= from another site: drawn where it allows that, else plain words", a
   const body = sceneBytes("line.glb");
   const allowing = { "Access-Control-Allow-Origin": "*" };
   const further = await serve({ routes: { "/open.glb": { body, headers: allowing } } });
+  const files = ["scene.glb", "sound.opus", ...[0, 1, 2, 3].map((i) => `groups/0000${i}.eftg`)];
   const other = await serve({
     routes: {
+      ...Object.fromEntries(files.map((file) => [`/clip/${file}`, { body: sceneBytes(`folder/${file}`), headers: allowing }])),
       "/moved.glb": { body: "", status: 302, headers: { ...allowing, Location: `${further.url}/open.glb` } },
       "/open.glb": { body, headers: allowing }, "/closed.glb": { body },
       "/gone.glb": { body: "", status: 404, headers: allowing },
@@ -187,6 +189,11 @@ test("?load= from another site: drawn where it allows that, else plain words", a
     assert.deepEqual([title, status], [name, "ready"]);
     await drawn.close();
   }
+  const clip = await open(load("clip/scene.glb"));
+  await clip.page.waitForFunction(() => window.eigenfield.field?.player);
+  const shown = await clip.page.evaluate(() => window.eigenfield.field.player.toFrame(22).then(() => window.eigenfield.field.player.frame));
+  assert.equal(shown, 22, "of a group that is a file beside it");
+  await clip.close();
   for (const [name, words] of [["closed.glb", /from 127\.0\.0\.1:\d+.*\(CORS\)\. Download/], ["gone.glb", /answered 404/]]) {
     const { page, close } = await open(load(name), { allowed: /CORS|ERR_FAILED|404/ });
     await page.waitForSelector(".message:not([hidden])");

@@ -97,6 +97,8 @@ test("names, bytes and scores stand above; the line is dragged, by a finger too,
   await line.press("ArrowRight");
   near(await at(), 0.27, 0.005);
   await line.blur();
+  const divide = page.locator("button.wide", { hasText: "beside" });
+  assert.deepEqual([await divide.isEnabled(), await divide.getAttribute("aria-pressed")], [true, "true"]);
   await page.keyboard.press("b");
   assert.equal(await at(), null);
   assert.ok(await line.isHidden());

@@ -277,12 +277,20 @@ test("of many seeks at once the last is shown, and all are answered", async () =
   assert.equal(player.frame, 16);
   assertWhole(shown, timeline);
   assert.ok(shown.length <= 3, "those between are not decoded");
+  for (const act of ["seek", "toFrame", "step"]) assert.throws(() => player[act](NaN), RangeError, act);
+  await player.toFrame(3);
+  assert.equal(player.frame, 3, "what is no number is not waited for");
   player.dispose();
 });
 
-test("the clock goes as fast as the speed says where decoders keep up", async () => {
+for (const ahead of [0, 30]) test(`the clock goes as fast as the speed says where decoders keep up: ${ahead} ms ahead by others`, async () => {
   const { player, shown, timeline } = makePlayer();
+  const other = (now) => { // a loop of the page, whose time is later than the player's own
+    player.update(now + ahead);
+    if (player.playing) requestAnimationFrame(other);
+  };
   player.play();
+  if (ahead > 0) requestAnimationFrame(other);
   await until(() => shown.length > 3);
   const [begun, position] = [clock.now, shown.at(-1).position];
   await until(() => clock.now > begun + 3000);

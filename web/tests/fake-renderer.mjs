@@ -5,15 +5,16 @@ globalThis.WebGLTexture = class {};
 
 const NUMBERS = { MAX_TEXTURE_SIZE: 4096, MAX_ARRAY_TEXTURE_LAYERS: 256, VIEWPORT: [0, 0, 1, 1], COLOR_WRITEMASK: [] };
 
-/** `puts`: what came into which component of which layer of which texture. */
+/** `puts`: what came into which component of which layer of which texture. `lose`: it is gone from then on. */
 function makeContext() {
   const puts = [];
+  let lost = false;
   let [array, layer, component, picture] = [null, 0, 0, null];
   const known = {
     getParameter: (name) => NUMBERS[name] ?? 0,
     getError: () => "NO_ERROR",
     getExtension: () => ({}),
-    isContextLost: () => false,
+    isContextLost: () => lost,
     createTexture: () => new WebGLTexture(),
     bindTexture: (target, texture) => (array = target === "TEXTURE_2D_ARRAY" && texture ? texture : array),
     texSubImage3D: (...given) => puts.push({ texture: array, layer: 0, component: 0, picture: given.at(-1).name }),
@@ -25,12 +26,12 @@ function makeContext() {
   const gl = new Proxy(new WebGL2RenderingContext(), {
     get: (_target, name) => known[name] ?? (/^[A-Z0-9_]+$/.test(String(name)) ? name : () => null),
   });
-  return { gl, puts };
+  return { gl, puts, lose: () => (lost = true) };
 }
 
 /** `drawn`: of each draw its scene, what it was drawn into, and what that showed then. */
 export function makeRenderer() {
-  const { gl, puts } = makeContext();
+  const { gl, puts, lose } = makeContext();
   const drawn = [];
   let target = null;
   const renderer = {
@@ -51,7 +52,7 @@ export function makeRenderer() {
     clear() {},
     render: (scene) => drawn.push({ scene, target, shown: scene.children.map(shownBy) }),
   };
-  return { renderer, puts, drawn };
+  return { renderer, puts, drawn, lose };
 }
 
 /** Where the mesh lies in a pass that lays it out; else the factors of a sum, and whether each texel looks weights up. */

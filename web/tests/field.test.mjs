@@ -85,14 +85,14 @@ function makeField({ sheets = null, geometry = makeGeometry(0), meshes = 1 } = {
   const field = new built.EigenField(parts, source, { memory: 1e8 });
   const fake = makeRenderer();
   const camera = new built.PerspectiveCamera();
-  const draw = (x, y, z) => {
+  const draw = (x, y, z, by = fake) => {
     camera.position.set(x, y, z);
     camera.updateMatrixWorld();
-    fake.drawn.length = fake.puts.length = 0;
-    fake.renderer.info.render.frame += 1;
+    by.drawn.length = by.puts.length = 0;
+    by.renderer.info.render.frame += 1;
     const drawing = field.mesh.children[0] ?? field.mesh; // of sheets a child
-    drawing.onBeforeRender(fake.renderer, null, camera);
-    return fake.drawn.flatMap(({ shown }) => shown);
+    drawing.onBeforeRender(by.renderer, null, camera);
+    return by.drawn.flatMap(({ shown }) => shown);
   };
   const heard = [];
   for (const type of ["texture", "complete", "error"]) field.addEventListener(type, () => heard.push(type));
@@ -241,6 +241,22 @@ test("textures that are gone are filled no more, and those in their place from t
   assert.deepEqual(fake.puts.map(({ picture }) => picture), ["mean 1"]); // an array as large as it needs nothing else
   field.dispose();
   assert.ok(source.ended && source.fillings[1].signal.aborted);
+});
+
+test("another renderer gets the textures of one that is gone, and not of one that is there", async () => {
+  const { field, source, fake, draw } = makeField();
+  draw(...NEAR);
+  const other = makeRenderer();
+  draw(...NEAR, other);
+  assert.equal(source.fillings.length, 1);
+  fake.lose();
+  draw(...NEAR, other);
+  draw(...NEAR, other);
+  assert.deepEqual([source.fillings.length, source.fillings[0].signal.aborted, field.loaded], [2, true, 2]);
+  await field.complete;
+  const never = makeField();
+  never.field.dispose();
+  await assert.rejects(never.field.complete, { name: "AbortError" });
 });
 
 test("how visible an eigen texture is made is the source's to say", async () => {

@@ -175,6 +175,25 @@ test("a connection that breaks, a wrong address and an abort are told apart", as
   });
   await hanging.sendTo(500);
   assert.equal(await aborting, "AbortError");
+  const left = await page.evaluate(async () => {
+    const { renderer, loadEigenfield } = window.lab;
+    const [gl, live, stop, decode] = [renderer.getContext(), new Set(), new AbortController(), createImageBitmap];
+    const { createTexture, deleteTexture } = gl;
+    gl.createTexture = () => {
+      const made = createTexture.call(gl);
+      live.add(made);
+      return made;
+    };
+    gl.deleteTexture = (one) => live.delete(one) && deleteTexture.call(gl, one);
+    window.createImageBitmap = (...given) => {
+      stop.abort(); // while it is decoded: all of the file is there
+      return decode(...given);
+    };
+    const bytes = await (await fetch("scene.glb")).arrayBuffer();
+    const { name } = await loadEigenfield(bytes, { renderer, signal: stop.signal }).catch((error) => error);
+    return [name, live.size];
+  });
+  assert.deepEqual(left, ["AbortError", 0], "nothing stays on the GPU");
   await close();
 });
 
@@ -545,8 +564,14 @@ test("a Blob, an ArrayBuffer and an address give the same scene", async () => {
   const found = await page.evaluate(async () => {
     const response = await fetch("scene.glb");
     const blob = await response.blob();
+    const buffer = await blob.arrayBuffer();
+    const frame = document.createElement("iframe"); // which has classes of its own
+    document.body.append(frame);
+    const { Blob: Theirs, Uint8Array: Bytes } = frame.contentWindow;
+    const { buffer: theirs } = new Bytes(new Uint8Array(buffer));
+    const within = new Uint8Array([7, ...new Uint8Array(buffer), 7]).subarray(1, -1);
     const made = [];
-    for (const source of [blob, await blob.arrayBuffer(), "scene.glb"]) {
+    for (const source of [blob, buffer, "scene.glb", new URL("scene.glb", location), new Theirs([buffer]), theirs, within]) {
       const { gltf, field } = await window.lab.loadEigenfield(source, { renderer: window.lab.renderer });
       await field.complete;
       window.lab.show(gltf);
@@ -555,9 +580,11 @@ test("a Blob, an ArrayBuffer and an address give the same scene", async () => {
       made.push({ total, sum: mesh + mean + weights + other + textures.reduce((a, b) => a + b), size: blob.size });
       field.dispose();
     }
-    return made;
+    const { name } = await window.lab.loadEigenfield({ url: "scene.glb" }).catch((error) => error);
+    return { made, name };
   });
-  for (const { total, sum, size } of found) assert.deepEqual([total, sum], [size, size]);
+  assert.deepEqual([found.made.length, found.name], [7, "TypeError"]);
+  for (const { total, sum, size } of found.made) assert.deepEqual([total, sum], [size, size]);
   await close();
 });
 

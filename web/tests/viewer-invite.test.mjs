@@ -115,6 +115,10 @@ test("an upright phone: the picture fills the height, zoom shows all of it, and 
   await page.evaluate(() => void (location.hash = "#x=0&y=0&zoom=0.1"));
   await page.waitForFunction(() => window.eigenfield.state().zoom < 1);
   near((await state(page)).frame.width, 1, 1e-9);
+  await page.waitForFunction(() => location.hash.includes("zoom=0."));
+  await page.reload();
+  await page.waitForFunction(() => window.eigenfield?.state().status === "ready");
+  near((await state(page)).frame.width, 1, 1e-3); // a link shows what was seen
   await page.getByRole("button", { name: /^Panel/ }).tap();
   for (const summary of await page.locator(".panel > details > summary").all()) await summary.tap();
   const targets = "button, select, summary, input[type=range], .segments span, .tick";

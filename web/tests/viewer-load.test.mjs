@@ -113,15 +113,59 @@ test("without a scene it asks for one; a chosen file and a dropped one open", as
   await page.waitForFunction(() => window.eigenfield.state().title === "line");
   assert.equal((await state(page)).status, "ready", "an error is not for ever");
   assert.ok(await page.locator(".message").isHidden());
+  for (const none of ["http://[", "https://example.org:99999/a.glb"]) {
+    await page.evaluate((address) => window.eigenfield.open(address), none);
+    assert.match(await message(page), /cannot be fetched; check its address/, none);
+    assert.equal((await state(page)).title, "line");
+  }
+  await close();
+});
+
+test("while a file arrives the context goes and comes back, and another file is opened: the page knows what it waits for", async () => {
+  const bytes = sceneBytes("scene.glb");
+  let go;
+  const more = new Promise((resolve) => (go = resolve));
+  const slow = async (request, response) => {
+    response.writeHead(200, { "Content-Type": "model/gltf-binary", "Content-Length": bytes.length });
+    response.write(bytes.subarray(0, 3000));
+    await more;
+    response.write(bytes.subarray(3000, -20_000)); // no more comes
+  };
+  const { page, close } = await openViewer(browser, "scene.glb", { routes: { "/scene.glb": slow }, allowed: /context.(lost|restored)/i });
+  await page.evaluate(async () => {
+    const canvas = document.querySelector("canvas.view");
+    const loss = canvas.getContext("webgl2").getExtension("WEBGL_lose_context");
+    for (const [act, told] of [["loseContext", "webglcontextlost"], ["restoreContext", "webglcontextrestored"]]) {
+      const heard = new Promise((resolve) => canvas.addEventListener(told, resolve, { once: true }));
+      await new Promise((resolve) => setTimeout(resolve, 50));
+      loss[act]();
+      await heard;
+    }
+  });
+  assert.equal(await page.evaluate(() => window.eigenfield.state().status), "loading");
+  assert.ok(await page.locator(".invitation").isHidden());
+  go();
+  await page.waitForFunction(() => window.eigenfield.state().loaded > 0);
+  await page.evaluate(() => void (window.waiting = window.eigenfield.settled()));
+  await drop(page, "line.glb");
+  await page.evaluate(() => window.waiting);
+  const { title, message: said } = await page.evaluate(() => window.eigenfield.state());
+  assert.deepEqual([title, said], ["line", null]);
   await close();
 });
 
 test("?load= names a scene", async () => {
   const { page, close } = await openViewer(browser, null, {
-    query: "?load=other.glb", routes: { "/other.glb": { body: sceneBytes("line.glb") } },
+    query: "?load=other.glb", routes: { "/other.glb": { body: sceneBytes("line.glb") }, "/another.glb": { body: sceneBytes("four.glb") } },
   });
   const now = await state(page);
   assert.deepEqual([now.status, now.title], ["ready", "other"]);
+  const link = page.getByRole("button", { name: "Copy a link" });
+  assert.ok(await link.isVisible());
+  for (const [address, leads] of [["another.glb", false], ["other.glb", true]]) {
+    await page.evaluate((url) => window.eigenfield.open(url), address);
+    assert.equal(await link.isVisible(), leads, "the page's address leads to its own scene alone");
+  }
   await close();
 });
 

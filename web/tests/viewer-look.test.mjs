@@ -44,6 +44,12 @@ test("the slider: fewer textures, fewer bytes, another picture, its SSIM where t
   const { curve } = await page.evaluate(() => window.eigenfield.field.info.scores);
   assert.equal(two.uvSsim, curve.find(({ textures }) => textures === 2).uv_ssim);
   assert.match(await page.locator("p.figures").innerText(), /kB · UV SSIM 0\.\d{4}/);
+  await page.emulateMedia({ forcedColors: "active", reducedMotion: "reduce" });
+  const looks = (selector, key) => page.locator(selector).first().evaluate((one, name) => getComputedStyle(one)[name], key);
+  const colours = [":checked", ":not(:checked)"].map((which) => looks(`.segments ${which} + span`, "backgroundColor"));
+  assert.equal(new Set(await Promise.all(colours)).size, 2, "what is chosen is seen in the system's own colours, too");
+  assert.equal(await looks("input[type=range]", "appearance"), "auto");
+  await page.emulateMedia({ forcedColors: "none", reducedMotion: "reduce" });
   assert.ok(apart(full, await picture(page)) > 0.2);
   await set(page, { count: 0 });
   const none = await picture(page);
@@ -134,7 +140,10 @@ test("a divider between drawing and photograph, by hand and by keys; a scale on 
 
 test("without photographs the comparison is off, and says how to have it", async () => {
   const { page, close } = await openViewer(browser, "scene.glb", { width: 900, height: 600 });
-  await state(page);
+  await page.evaluate(() => window.eigenfield.goTo(0.3, 0.1));
+  for (const key of [" ", "b"]) await page.keyboard.press(key);
+  const free = await state(page);
+  assert.deepEqual([free.x, free.y, free.camera], [0.3, 0.1, null], "the eye stays where it is");
   await page.keyboard.press("]");
   await page.keyboard.press(" ");
   await page.keyboard.press("4");

@@ -42,6 +42,16 @@ test("a soft stop at the array's edge: a hand pulls a little further, and it com
   assert.equal((await state(page)).x, 1);
   await page.evaluate(() => window.eigenfield.goTo(-7, 0.5));
   near((await state(page)).x, -1, 0);
+  await page.mouse.move(200, 180);
+  await page.mouse.down();
+  await page.mouse.move(190, 180);
+  await page.keyboard.press("o");
+  await page.mouse.up();
+  await page.keyboard.press("o");
+  await page.keyboard.down("ArrowLeft");
+  await page.waitForFunction(() => window.eigenfield.state().x < -1.01);
+  await page.keyboard.up("ArrowLeft");
+  assert.equal((await state(page)).x, -1, "the hand let go of it, too");
   await close();
 });
 
@@ -283,5 +293,9 @@ test("the view is in the address, and comes from it", async () => {
   await page.evaluate(() => void (location.hash = "#x=nonsense&n=-5&mode=%00&view=<b>"));
   const odd = await state(page);
   assert.deepEqual([odd.view, odd.status], ["picture", "ready"]);
+  await page.evaluate(() => void (location.hash = "#eye=1e200,0,0&at=0,0,0"));
+  await page.waitForTimeout(50);
+  await settled(page);
+  assert.ok((await page.evaluate(() => window.eigenfield.eyes())).flat().every(Number.isFinite));
   await close();
 });

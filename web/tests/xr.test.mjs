@@ -98,10 +98,29 @@ test("both eyes are drawn, each with the weights of its own place, around the ar
   const shot = await colours(page);
   assert.ok(shot.left > 500 && shot.right > 500, `colours: ${JSON.stringify(shot)}`);
 
+  await page.setViewportSize({ width: 400, height: 360 });
   await page.evaluate(() => headset.activeSession.end());
+  await settled(page);
+  const size = await page.locator("canvas.view").evaluate((canvas) => [canvas.width, canvas.height]);
+  assert.deepEqual(size, [400, 360], "of the window, which was another one meanwhile");
+  await page.setViewportSize({ width: 640, height: 320 });
+  await page.waitForFunction(() => document.querySelector("canvas.view").width === 640);
   const now = await state(page);
   assert.deepEqual([now.x, now.y, now.mode], [before.x, before.y, before.mode]);
   assert.ok(apart(free, await picture(page)) < 0.01, "the view before");
+  for (const name of ["requestSession", "requestReferenceSpace"]) {
+    await page.evaluate((name) => {
+      const own = name === "requestSession" ? navigator.xr : IWER.XRSession.prototype;
+      const before = own[name];
+      own[name] = () => {
+        own[name] = before; // for the next time
+        return Promise.reject(new Error(`no ${name}`));
+      };
+    }, name);
+    await page.getByRole("button", { name: "Enter VR" }).dispatchEvent("click"); // the emulator leaves the canvas over it
+    await page.getByText(`The headset cannot show the scene: no ${name}`).waitFor();
+    assert.ok(apart(free, await picture(page)) < 0.01, "the page goes on");
+  }
   await close();
 });
 

@@ -77,9 +77,11 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   lastByRay = false;
   /** Plays a clip; null: a scene of one instant. */
   readonly player: Player | null;
-  /** All eigen textures are there; rejects with the SceneError of the `error` event. */
+  /** All eigen textures are there; rejects with the SceneError of the `error` event, or an AbortError if the field was
+   * disposed of before. */
   readonly complete: Promise<void>;
 
+  private giveUp: (reason: unknown) => void = () => undefined; // `complete`
   private readonly surface: Surface;
   private readonly textures: Textures;
   private weights: EigenWeights;
@@ -115,6 +117,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
     if (parts.clip) this.shape(parts.clip.group, 0, parts.clip.mesh, false);
     this.textures = new Textures(parts, source, this.surface, options);
     this.complete = new Promise((resolve, reject) => {
+      this.giveUp = reject;
       this.addEventListener("complete", () => resolve());
       this.addEventListener("error", ({ error }) => reject(error));
     });
@@ -181,6 +184,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   }
 
   dispose(): void {
+    this.giveUp(new DOMException("The field was disposed of.", "AbortError"));
     this.player?.dispose();
     this.textures.dispose();
     this.freeComposers();
@@ -252,7 +256,7 @@ export class EigenField extends EventDispatcher<FieldEvents> {
   // ---- before each draw
 
   private prepare(renderer: WebGLRenderer, camera: Camera, mesh: Mesh): void {
-    if (!this.textures.attached) this.textures.attach(renderer);
+    if (!this.textures.serves(renderer)) this.textures.attach(renderer);
     const eye = eyeOf(camera, mesh);
     const [x, y] = planeCoordinates(this.info.viewPlane, eye);
     const captured = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null;

@@ -24,10 +24,15 @@ export interface Loaded {
 
 /**
  * Loads a scene while it arrives: resolves when mesh and mean can be drawn; eigen textures follow in order, and what
- * goes wrong with them is an `error` event of the field. Rejects with a SceneError, or the signal's reason.
+ * goes wrong with them is an `error` event of the field. Rejects with a SceneError, the signal's reason, or a TypeError
+ * for what is no source.
  */
-export async function loadEigenfield(source: string | Blob | ArrayBuffer, options: LoadOptions = {}): Promise<Loaded> {
+export async function loadEigenfield(
+  from: string | URL | Blob | ArrayBuffer | ArrayBufferView,
+  options: LoadOptions = {},
+): Promise<Loaded> {
   const { signal } = options;
+  const source = sourceOf(from);
   signal?.throwIfAborted();
   const arrival = new Arrival();
   const [stop, first] = [new AbortController(), new AbortController()]; // of all, and of the first answer alone
@@ -47,18 +52,31 @@ export async function loadEigenfield(source: string | Blob | ArrayBuffer, option
     }
     const ranges = (file: string | Blob): Ranges =>
       new Ranges(file, arrival, container.length, () => first.abort(), stop.signal);
-    const far = source instanceof ArrayBuffer ? arrival : ranges(source);
+    const far = source instanceof Uint8Array ? arrival : ranges(source);
     const brought = options.files ? besideHere(options.files) : null;
     const beside = typeof source === "string" ? new BesideUrl(source, stop.signal) : brought;
     const gltf = await parseScene(arrival, container, far, beside, options);
+    const { eigenfield: made, eigenfieldError: error }: Record<string, unknown> = gltf.userData;
+    const field = made instanceof EigenField ? made : null;
+    if (signal?.aborted) field?.dispose(); // nobody else would free its textures
     signal?.throwIfAborted();
-    const { eigenfield: field, eigenfieldError: error }: Record<string, unknown> = gltf.userData;
-    return { gltf, field: field instanceof EigenField ? field : null, error: error instanceof SceneError ? error : null };
+    return { gltf, field, error: error instanceof SceneError ? error : null };
   } catch (reason) {
     stop.abort();
     signal?.throwIfAborted();
     throw asSceneError(reason);
   }
+}
+
+/** What is loaded. A page within another one has classes of its own, and so it is known by its kind. Raises TypeError. */
+function sourceOf(from: unknown): string | Blob | Uint8Array<ArrayBuffer> {
+  if (typeof from === "string") return from;
+  if (ArrayBuffer.isView(from)) return new Uint8Array(from.buffer as ArrayBuffer, from.byteOffset, from.byteLength);
+  const kind = Object.prototype.toString.call(from).slice("[object ".length, -1);
+  if (kind === "URL") return String(from);
+  if (kind === "Blob" || kind === "File") return from as Blob;
+  if (kind === "ArrayBuffer") return new Uint8Array(from as ArrayBuffer);
+  throw new TypeError("A scene is loaded from an address, a Blob or an ArrayBuffer.");
 }
 
 /** `far`: where groups of a clip are read, unless they are files `beside` it; null: of which nothing is known. */
@@ -104,17 +122,17 @@ async function parsePlain(arrival: Arrival, container: Container, fetching: Prom
 }
 
 async function receive(
-  source: string | Blob | ArrayBuffer,
+  source: string | Blob | Uint8Array<ArrayBuffer>,
   arrival: Arrival,
   signal: AbortSignal,
   onBytes: LoadOptions["onBytes"],
 ): Promise<void> {
-  if (source instanceof ArrayBuffer) {
-    arrival.push(new Uint8Array(source));
-    onBytes?.(source.byteLength, source.byteLength);
+  if (source instanceof Uint8Array) {
+    arrival.push(source);
+    onBytes?.(source.length, source.length);
     return arrival.end();
   }
-  const { body, total } = source instanceof Blob ? openBlob(source) : await open(source, signal);
+  const { body, total } = typeof source === "string" ? await open(source, signal) : openBlob(source);
   const reader = body.getReader();
   signal.addEventListener("abort", () => void reader.cancel().catch(() => undefined));
   for (;;) {

@@ -165,26 +165,30 @@ export class Player extends EventDispatcher<PlayerEvents> {
 
   /** To the frame that is nearest to a time in seconds; resolves when it is shown, or another that was sought since. */
   seek(seconds: number): Promise<void> {
+    checkFinite(seconds);
     return this.toFrame(frameAt(this.timeline, seconds));
   }
 
   /** To a frame by its number, as `seek`. Where that takes longer than a moment, frames on the way to it are shown. */
   toFrame(number: number): Promise<void> {
+    checkFinite(number);
     return this.toPosition(this.lap + Math.min(Math.max(Math.round(number), 0), this.frames - 1));
   }
 
   /** So many frames on, or back, and stands there. In a loop the first follows the last. */
   step(frames: number): Promise<void> {
+    checkFinite(frames);
     this.pause();
     const position = this.ring.stepped(this.following ?? this.goal ?? this.shown.position, Math.round(frames));
     if (this.loop) return this.toPosition(position < 0 ? position + this.frames : position);
     return this.toPosition(Math.min(Math.max(position, this.lap), this.end));
   }
 
-  /** Shows the frame that is due. `now` in milliseconds. In a headset, where the page has no frames, whoever draws calls
+  /** Shows the frame that is due. `time` in milliseconds. In a headset, where the page has no frames, whoever draws calls
    * this before each. */
-  update(now = performance.now()): void {
+  update(time = performance.now()): void {
     if (this.disposed) return;
+    const now = Math.max(time, this.last ?? time); // a frame of the page has the time of its beginning, which may be past
     const seconds = this.last === null ? 0 : Math.min((now - this.last) / 1000, LONGEST);
     this.last = this.plays && this.goal === null ? now : null;
     if (this.goal === null && !this.plays) return;
@@ -331,4 +335,9 @@ export class Player extends EventDispatcher<PlayerEvents> {
     this.goal = this.following = null;
     this.settle();
   }
+}
+
+/** A frame without a place would be waited for for ever. Raises RangeError. */
+function checkFinite(value: number): void {
+  if (!Number.isFinite(value)) throw new RangeError("Times and numbers of frames are finite.");
 }

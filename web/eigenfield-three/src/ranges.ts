@@ -34,7 +34,7 @@ export class Ranges {
       if (bytes) return bytes;
     }
     this.giveUp();
-    if (this.source instanceof Blob) return this.slice(this.source, from, to);
+    if (typeof this.source !== "string") return this.slice(this.source, from, to);
     const url = this.source;
     const read = (): Promise<ArrayBuffer> => this.whole?.read(from, to) ?? this.fetch(url, from, to);
     return retried(this.signal, read, () => this.whole === null);

@@ -86,9 +86,10 @@ export class Textures {
     return this.plan ? this.plan.bytes - this.needs.geometry + geometryBytes(this.surface.geometry) : 0;
   }
 
-  /** Whether there is nothing to attach any more. */
-  get attached(): boolean {
-    return this.renderer !== null || this.disposed;
+  /** Whether there is nothing to attach for what this renderer draws. One whose context is gone gives way to another. */
+  serves(renderer: WebGLRenderer): boolean {
+    if (this.disposed || this.renderer === renderer) return true;
+    return this.renderer !== null && !this.renderer.getContext().isContextLost();
   }
 
   /** Loads everything for a renderer, again if it was there. What can be drawn at once is there on return. */

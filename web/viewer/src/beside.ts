@@ -62,7 +62,7 @@ export function createBeside(session: Session, stage: Stage, config: Config, eve
       const { field } = loaded;
       if (session.beside !== mine) return field?.dispose();
       stage.setBeside(loaded.gltf.scene);
-      mine.scene = sceneOf(source, loaded, null);
+      mine.scene = sceneOf(source, loaded, null, stage.aspect());
       const player = field?.player;
       player?.addEventListener("frame", touch);
       if (player && !reducedMotion()) player.play();

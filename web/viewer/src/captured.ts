@@ -85,7 +85,7 @@ export function createCaptured(
       if (index !== undefined) to(index);
     },
     showPhotograph: (shown) => {
-      if (shown && session.captured === null) nearest();
+      if (shown && session.captured === null && has(places.nearest())) nearest();
       session.photographShown = shown && session.captured !== null && hasPhotograph();
       if (session.photographShown && session.options.view === "error") session.options.view = "picture";
       changed();

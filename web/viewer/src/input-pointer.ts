@@ -1,6 +1,7 @@
 // Mouse, pen and fingers on the canvas.
 
 import { Vector2 } from "three";
+import type { Mode } from "./mode";
 import type { Viewer } from "./viewer";
 
 const WHEEL = 0.0015; // factor a pixel of scrolling
@@ -9,6 +10,7 @@ const DOLLY = 0.0006; // part of the scene's distance a pixel of scrolling
 export function listenToPointers(viewer: Viewer): void {
   const { canvas } = viewer.stage;
   const down = new Map<number, { x: number; y: number }>();
+  let grabbed: Mode | null = null; // which a key may have changed since for another one
   const side = (): number => Math.max(Math.min(canvas.clientWidth, canvas.clientHeight), 1);
   const spread = (): number => {
     const [a, b] = [...down.values()];
@@ -28,6 +30,8 @@ export function listenToPointers(viewer: Viewer): void {
     if (dx === 0 && dy === 0) return;
     Object.assign(last, { x: event.clientX, y: event.clientY });
     const mode = viewer.moving(); // only now: a mere click does not leave a captured camera
+    if (mode !== grabbed) grabbed?.release();
+    grabbed = mode;
     mode?.grab();
     const panning = event.pointerType !== "touch" && ((event.buttons & 6) !== 0 || event.shiftKey);
     mode?.drag(dx / side() / down.size, dy / side() / down.size, panning || down.size > 1);
@@ -35,8 +39,10 @@ export function listenToPointers(viewer: Viewer): void {
     if (before > 0 && after > 0) mode?.closer(after / before);
   });
   const up = (event: PointerEvent): void => {
-    if (!down.delete(event.pointerId) || down.size > 0 || viewer.captured() !== null) return;
-    viewer.moving()?.release();
+    if (!down.delete(event.pointerId) || down.size > 0) return;
+    grabbed?.release();
+    grabbed = null;
+    if (viewer.captured() === null) viewer.moving(); // a mere click does not leave a captured camera
   };
   canvas.addEventListener("pointerup", up);
   canvas.addEventListener("pointercancel", up);

@@ -19,18 +19,23 @@ export interface Tilt {
 export function createTilt(viewer: Viewer, changed: () => void): Tilt {
   let on = false;
   let start: { across: number; down: number; x: number; y: number } | null = null;
+  let aim: { x: number; y: number } | null = null; // where it leads
 
   const lean = (event: DeviceOrientationEvent): void => {
     if (event.beta === null || event.gamma === null) return;
     const turn = ((screen.orientation?.angle ?? 0) * Math.PI) / 180;
     const across = event.gamma * Math.cos(turn) + event.beta * Math.sin(turn);
     const down = event.beta * Math.cos(turn) - event.gamma * Math.sin(turn);
-    if (viewer.modeName() !== "plane" || viewer.captured() !== null) {
+    const plane = viewer.scene()?.plane;
+    if (!plane || viewer.modeName() !== "plane" || viewer.captured() !== null) {
       start = null;
       return;
     }
-    start ??= { across, down, ...viewer.coordinates() };
-    viewer.scene()?.plane?.goTo(start.x + (across - start.across) / REACH, start.y + (down - start.down) / REACH);
+    const { x, y } = plane.goal();
+    if (x !== aim?.x || y !== aim.y) start = null; // something else has moved the eye since
+    start ??= { across, down, x, y };
+    plane.goTo(start.x + (across - start.across) / REACH, start.y + (down - start.down) / REACH);
+    aim = plane.goal();
     viewer.moving();
   };
 

@@ -75,7 +75,10 @@ function start(): void {
   const compared = createCompared(viewer);
   const playbar = createPlaybar(viewer);
   const help = createHelp(config.version);
-  const headset = createHeadset(viewer, () => update());
+  const headset = createHeadset(viewer, (inside) => {
+    update();
+    if (!inside) fit(); // the window may be another one by now
+  });
   const draft = createDraft(viewer, headset.presenting);
   const tilt = createTilt(viewer, () => update());
 
@@ -133,7 +136,7 @@ function start(): void {
     for (const one of [home, shoot, fold]) one.hidden = viewer.scene() === null;
     laboratory.hidden = !config.laboratory || viewer.status() === "empty";
     const { source, field } = viewer.scene() ?? {};
-    share.link.hidden = !share.possible || !source || (!source.own && source.from instanceof Blob);
+    share.link.hidden = !share.possible || !source || source.from !== named?.from; // an address leads to no other
     share.embed.hidden = share.link.hidden;
     download.hidden = !config.download || source?.own !== true || field?.info.inFiles === true;
     const title = viewer.scene()?.source.name;
@@ -174,10 +177,11 @@ function start(): void {
   }, RATIO_MS);
   window.eigenfield = createApi(viewer);
 
+  viewer.stage.resize(stageArea.clientWidth, stageArea.clientHeight); // how far one may zoom out depends on it
+  const named = namedSource(config, document, address);
   update();
-  const source = namedSource(config, document, address);
-  const opened = source && viewer.open(source);
-  const other = source?.own ? besideSource(config, document) : null;
+  const opened = named && viewer.open(named);
+  const other = named?.own ? besideSource(config, document) : null;
   if (other) void viewer.openBeside(other);
   if (config.worker !== null) keepOffline(config.worker, opened?.then(() => viewer.scene()?.source.from));
 }

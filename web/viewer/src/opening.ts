@@ -2,7 +2,7 @@
 
 import { type EigenField, type Loaded, loadEigenfield, SceneError } from "eigenfield-three";
 import type { Config } from "./config";
-import { confine } from "./confine";
+import { addressOf, confine } from "./confine";
 import { pluginWords, words } from "./language";
 import { sceneOf } from "./scene-of";
 import type { Message, Session } from "./session";
@@ -27,19 +27,21 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
   const { changed } = events;
   const openings: AbortController[] = []; // of the scene that is open and of those that may follow it, oldest first
   let opened: Promise<void> = Promise.resolve();
+  let gone = (): void => undefined; // of the scene that is open
 
   const close = (): void => {
     if (!session.scene) return;
     events.closing();
     session.scene.field?.dispose();
     stage.clear();
+    gone();
     Object.assign(session, { scene: null, captured: null, photographShown: false });
   };
   const put = (source: Source, { gltf, field, error }: Loaded): void => {
     close();
     stage.put(gltf.scene, field !== null);
     const said = error && described(error, null);
-    const scene = sceneOf(source, { gltf, field, error }, said?.text ?? null);
+    const scene = sceneOf(source, { gltf, field, error }, said?.text ?? null, stage.aspect());
     if (field && config.metresPerUnit !== null && source.own) field.info.metresPerUnit = config.metresPerUnit;
     Object.assign(session, { scene, status: "ready", mode: scene.plane ? "plane" : "orbit" });
     session.message = said;
@@ -56,6 +58,7 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
     });
     field.addEventListener("limited", changed);
     const failed = (error: unknown): void => {
+      if (session.scene?.field !== field) return; // it was disposed of
       session.message = described(error, null);
       changed();
     };
@@ -78,7 +81,7 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
         memory: config.memory ?? undefined,
         files: source.files,
         onBytes: (loaded, total) => {
-          confine(document); // the answer has come, and nothing of the file is read yet
+          confine(document, source.from); // the answer has come, and nothing of the file is read yet
           if (!latest()) return;
           session.progress = { loaded, total: total ?? source.bytes };
           changed();
@@ -119,9 +122,10 @@ export function createOpening(session: Session, stage: Stage, config: Config, ev
   stage.canvas.addEventListener("webglcontextrestored", () => {
     const { scene, options } = session;
     session.message = null;
-    session.status = scene ? "ready" : "empty";
+    session.status = scene ? "ready" : openings.length > 0 ? "loading" : "empty";
     stage.setBackground(options.background); // which the new context does not know
-    if (scene?.field) opened = ended(scene.field); // it brings its textures back itself
+    const closed = new Promise<void>((resolve) => (gone = resolve));
+    if (scene?.field) opened = Promise.race([ended(scene.field), closed]); // it brings its textures back itself
     changed();
   });
 
@@ -159,6 +163,6 @@ export function described(error: unknown, source: Source | null): Message {
 
 /** The host of a URL that is not this page's. A browser says not why a fetch from there failed. */
 function otherSite(url: string): string | null {
-  const { origin, host } = new URL(url, location.href);
+  const { origin, host } = addressOf(url) ?? location;
   return origin === location.origin ? null : host;
 }

@@ -182,9 +182,10 @@ export function createPanel(viewer: Viewer): Panel {
       flip.title = photographs ? "" : words("noPhotographs");
       const flipped = viewer.photographShown();
       flip.replaceChildren(words(flipped ? "showDrawing" : "showPhotograph"), keyCaps(words("keySpace")));
-      divide.disabled = !photographs;
-      divide.title = photographs ? "" : words("noPhotographs");
-      divide.setAttribute("aria-pressed", String(flipped && options.divider !== null));
+      const beside = viewer.beside()?.scene != null;
+      divide.disabled = !photographs && !beside;
+      divide.title = divide.disabled ? words("noPhotographs") : "";
+      divide.setAttribute("aria-pressed", String((flipped || beside) && options.divider !== null));
       flip.setAttribute("aria-pressed", String(flipped));
       noPhotographs.hidden = photographs || viewer.player() !== null;
       flip.hidden = divide.hidden = viewer.player() !== null; // photographs would be of one instant

@@ -17,19 +17,21 @@ const NEAREST = 0.6; // how far forward, in parts of the distance of the nearest
 
 export interface PlaneMode extends Mode {
   at(): { x: number; y: number; zoom: number; dolly: number };
+  /** Where the eye is on the way to. */
+  goal(): { x: number; y: number };
   goTo(x: number, y: number, jump?: boolean): void;
   setZoom(zoom: number): void;
   setDolly(dolly: number): void;
 }
 
-export function createPlaneMode(field: EigenField): PlaneMode {
+/** aspect: of the canvas. */
+export function createPlaneMode(field: EigenField, aspect: number): PlaneMode {
   const { viewPlane } = field.info;
   const line = viewPlane.extent[1] === 0;
   const place = { x: 0, y: 0, zoom: 1, dolly: 0 }; // what is drawn
   const goal = { x: 0, y: 0, zoom: 1, dolly: 0 };
   const depth = depths(field);
   const furthest = (NEAREST * depth.nearest) / depth.middle;
-  let cover = 1; // how much larger than whole the picture is at zoom 1
   let held = false;
   let pushed = false;
 
@@ -38,6 +40,7 @@ export function createPlaneMode(field: EigenField): PlaneMode {
     goal.y = line ? 0 : clamp(y, -reach, reach);
   };
   const setDolly = (dolly: number): void => void (goal.dolly = clamp(dolly, BACK, furthest));
+  let cover = coverOf(novelCamera(field, 0, 0), aspect); // how much larger than whole the picture is at zoom 1
   const setZoom = (zoom: number): void => void (goal.zoom = clamp(zoom, 1 / cover, LARGEST));
 
   const view = (): CaptureCamera => {
@@ -57,6 +60,7 @@ export function createPlaneMode(field: EigenField): PlaneMode {
 
   return {
     at: () => ({ ...place }),
+    goal: () => ({ x: goal.x, y: goal.y }),
     goTo: (x, y, jump = false) => {
       setGoal(x, y, 1);
       if (jump) Object.assign(place, goal);
@@ -92,12 +96,15 @@ export function createPlaneMode(field: EigenField): PlaneMode {
     },
     place: (camera: PerspectiveCamera, aspect: number): Frame => {
       const seen = view();
-      cover = fillsHeight(aspect) ? Math.max(1, seen.width / seen.height / aspect) : 1;
+      cover = coverOf(seen, aspect);
       return placeCamera(field, camera, seen, aspect, cover * place.zoom);
     },
     beyond: () => 0,
   };
 }
+
+const coverOf = ({ width, height }: CaptureCamera, aspect: number): number =>
+  fillsHeight(aspect) ? Math.max(1, width / height / aspect) : 1;
 
 /** A rubber band: as it is within the array, and never more than GIVE beyond its edge. */
 export function soft(value: number): number {

@@ -9,13 +9,13 @@ import type { Scene } from "./session";
 import type { Source } from "./source";
 import { extentOf, surroundingsOf } from "./surroundings";
 
-/** Of what is on the stage already. lacks: why it has no eigen textures, if it has none. */
-export function sceneOf(source: Source, { gltf, field }: Loaded, lacks: string | null): Scene {
+/** Of what is on the stage already, whose canvas has this aspect. lacks: why it has no eigen textures, if it has none. */
+export function sceneOf(source: Source, { gltf, field }: Loaded, lacks: string | null, aspect: number): Scene {
   gltf.scene.updateWorldMatrix(true, true);
   const around = field ? surroundingsOf(field) : plainSurroundings(gltf);
   return {
     source, gltf, field, around, lacks,
-    plane: field?.info.facesPlane ? createPlaneMode(field) : null,
+    plane: field?.info.facesPlane ? createPlaneMode(field, aspect) : null,
     orbit: createOrbitMode(field?.mesh ?? gltf.scene, around),
   };
 }

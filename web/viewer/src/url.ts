@@ -5,6 +5,7 @@ import { MIXINGS, oneOf, VIEWS } from "./options";
 import type { Viewer } from "./viewer";
 
 const PAUSE = 300; // milliseconds between two writings
+const FURTHEST = 1e9; // of an eye on an axis: what is computed of it stays a number
 
 export function keepAddress(viewer: Viewer): void {
   let timer: number | null = null;
@@ -86,7 +87,7 @@ function applyHash(viewer: Viewer, hash: string): void {
   const place = (key: string): Vector3 | null => {
     const numbers = (parts.get(key) ?? "").split(",").map(Number);
     const [x, y, z] = numbers;
-    if (x === undefined || y === undefined || z === undefined || !numbers.every(Number.isFinite)) return null;
+    if (x === undefined || y === undefined || z === undefined || !numbers.every((one) => Math.abs(one) <= FURTHEST)) return null;
     return new Vector3(x, y, z);
   };
 

@@ -139,16 +139,22 @@ export function createHeadset(viewer: Viewer, entered: (inside: boolean) => void
       return;
     }
     if (!navigator.xr || !viewer.scene()?.field) return;
-    session = await navigator.xr.requestSession("immersive-vr");
-    viewer.suspend();
-    session.addEventListener("end", ended);
-    base = null;
-    Object.assign(shift, { x: 0, y: 0 });
-    renderer.xr.enabled = true;
-    renderer.setAnimationLoop(frame);
-    await renderer.xr.setSession(session);
-    entered(true);
+    let own: XRSession | null = null;
+    try {
+      own = session = await navigator.xr.requestSession("immersive-vr");
+      viewer.suspend();
+      base = null;
+      Object.assign(shift, { x: 0, y: 0 });
+      renderer.xr.enabled = true;
+      renderer.setAnimationLoop(frame);
+      await renderer.xr.setSession(own);
+      entered(true);
+    } catch (error) {
+      await own?.end().catch(() => undefined); // which may be why
+      viewer.say(words("vrRefused", { reason: error instanceof Error ? error.message : String(error) }));
+    }
   };
+  renderer.xr.addEventListener("sessionend", ended); // three.js has given the canvas its size back then
   return { root, presenting: () => session !== null, enter };
 }
 

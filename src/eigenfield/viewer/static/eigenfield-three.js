@@ -67,7 +67,7 @@ function ve(e, t) {
 			0
 		]),
 		...N("colr", [
-			...be("nclx"),
+			...F("nclx"),
 			0,
 			2,
 			0,
@@ -77,15 +77,15 @@ function ve(e, t) {
 			128
 		])
 	]), c = N("ftyp", [
-		...be("avif"),
+		...F("avif"),
 		...P(0),
-		...be("avifmif1miafMA1B")
+		...F("avifmif1miafMA1B")
 	]), l = (t) => N("meta", [
 		...P(0),
 		...N("hdlr", [
 			...P(0),
 			...P(0),
-			...be("pict"),
+			...F("pict"),
 			...Array(13).fill(0)
 		]),
 		...N("pitm", [
@@ -121,7 +121,7 @@ function ve(e, t) {
 				1,
 				0,
 				0,
-				...be("av01"),
+				...F("av01"),
 				0
 			])
 		]),
@@ -140,7 +140,7 @@ function ve(e, t) {
 		...c,
 		...l(u),
 		...P(8 + e.byteLength),
-		...be("mdat")
+		...F("mdat")
 	], f = new Uint8Array(u + e.byteLength);
 	return f.set(d), f.set(new Uint8Array(e), u), f.buffer;
 }
@@ -165,7 +165,7 @@ function ye(e, t) {
 function N(e, t) {
 	return [
 		...P(8 + t.length),
-		...be(e),
+		...F(e),
 		...t
 	];
 }
@@ -177,11 +177,11 @@ function P(e) {
 		0
 	].map((t) => e >>> t & 255);
 }
-function be(e) {
+function F(e) {
 	return Array.from(e, (e) => e.charCodeAt(0));
 }
 // eigenfield-three/src/inflate.ts
-async function xe(e, t, n, r) {
+async function be(e, t, n, r) {
 	let i = [], a = 0, o = new Blob([e]).stream().pipeThrough(new DecompressionStream(t)).getReader();
 	try {
 		for (let e = await o.read(); !e.done && a <= n; e = await o.read()) i.push(e.value), a += e.value.length;
@@ -194,11 +194,11 @@ async function xe(e, t, n, r) {
 	return s;
 }
 // eigenfield-three/src/limits.ts
-var Se = "EIGENFIELD_eigen_textures", Ce = 64 * 2 ** 20, F = 16384, we = 16384, Te = 1024, Ee = 2 ** 27, De = 4096, Oe = 8 * 2 ** 30, I = 1e5, ke = 65535, Ae = 2 ** 29, L = 1024, je = 2 ** 25, Me = 2 ** 26, Ne = 2 ** 27, Pe = 8192, Fe = 2 ** 24, Ie = 2 ** 25, Le = 2 ** 20, Re = 2 ** 16, ze = 2 ** 30, Be = 1024, Ve = 2 ** 22, He = 2 ** 28, Ue = 2 ** 31 - 1, We = 2 ** 28, Ge = 1e30, R = 65536, Ke = 126, qe = 64, Je = 0, Ye = 1, Xe = 2, Ze = 24, Qe = 44, $e = 21, et = 26214, tt = 4, nt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(R / (1 + Math.exp((2047 - t) / 256)))), rt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), it = Float64Array.from({ length: 127 }, (e, t) => Math.round(R / (t + 1.5)));
-function z(e) {
-	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + z(Math.floor(e / 4294967296));
+var xe = "EIGENFIELD_eigen_textures", Se = 64 * 2 ** 20, I = 16384, Ce = 16384, we = 1024, Te = 2 ** 27, Ee = 4096, De = 8 * 2 ** 30, L = 1e5, Oe = 65535, ke = 2 ** 29, R = 1024, Ae = 2 ** 25, je = 2 ** 26, Me = 2 ** 27, Ne = 8192, Pe = 2 ** 24, Fe = 2 ** 25, Ie = 2 ** 20, Le = 2 ** 16, Re = 2 ** 30, ze = 1024, Be = 2 ** 22, Ve = 2 ** 28, He = 2 ** 31 - 1, Ue = 2 ** 28, We = 1e30, z = 65536, Ge = 126, Ke = 64, qe = 0, Je = 1, Ye = 2, Xe = 24, Ze = 44, Qe = 21, $e = 26214, et = 4, tt = Float64Array.from({ length: 4095 }, (e, t) => Math.round(z / (1 + Math.exp((2047 - t) / 256)))), nt = Float64Array.from({ length: 4096 }, (e, t) => Math.round(256 * Math.log((t + .5) / (4095.5 - t)))), rt = Float64Array.from({ length: 127 }, (e, t) => Math.round(z / (t + 1.5)));
+function B(e) {
+	return e < 4294967296 ? 32 - Math.clz32(e) : 32 + B(Math.floor(e / 4294967296));
 }
-var at = class {
+var it = class {
 	bytes;
 	low = 0;
 	high = 4294967295;
@@ -208,49 +208,49 @@ var at = class {
 	seen;
 	weights;
 	constructor(e, t, n) {
-		this.bytes = e, this.probability = new Uint16Array(t * qe).fill(R / 2), this.seen = new Uint8Array(t * qe), this.weights = new Float64Array(n * qe * 3).fill(et);
-		for (let e = 0; e < tt; e++) this.code = this.code * 256 + this.next();
+		this.bytes = e, this.probability = new Uint16Array(t * Ke).fill(z / 2), this.seen = new Uint8Array(t * Ke), this.weights = new Float64Array(n * Ke * 3).fill($e);
+		for (let e = 0; e < et; e++) this.code = this.code * 256 + this.next();
 	}
 	checkEnd(e) {
-		if (this.at > this.bytes.length + tt) throw ue(e);
+		if (this.at > this.bytes.length + et) throw ue(e);
 	}
 	flag(e, t, n, r) {
 		return this.node(e, t, n, r, 0) === 1;
 	}
 	raw(e) {
 		let t = 0;
-		for (let n = 0; n < e; n++) t = t * 2 + this.split(R / 2);
+		for (let n = 0; n < e; n++) t = t * 2 + this.split(z / 2);
 		return t;
 	}
 	integer(e, t, n, r) {
 		let i = this.magnitude(e, t, n, r);
-		return i === 0 ? 0 : this.node(e, t, n, r, Ye) ? -i : i;
+		return i === 0 ? 0 : this.node(e, t, n, r, Je) ? -i : i;
 	}
 	magnitude(e, t, n, r) {
-		if (!this.node(e, t, n, r, Je)) return 0;
+		if (!this.node(e, t, n, r, qe)) return 0;
 		let i = 0;
-		for (; i < $e && this.node(e, t, n, r, Xe + i);) i += 1;
+		for (; i < Qe && this.node(e, t, n, r, Ye + i);) i += 1;
 		if (i < 2) return i + 1;
 		let a = 1;
 		for (let o = i - 2; o >= 0; o--) {
 			let s;
-			s = o === i - 2 ? this.node(e, t, n, r, Ze + i) : o === i - 3 ? this.node(e, t, n, r, Qe + 2 * Math.min(i, 9) + (a & 1)) : this.split(R / 2), a = a * 2 + s;
+			s = o === i - 2 ? this.node(e, t, n, r, Xe + i) : o === i - 3 ? this.node(e, t, n, r, Ze + 2 * Math.min(i, 9) + (a & 1)) : this.split(z / 2), a = a * 2 + s;
 		}
 		return a + 1;
 	}
 	node(e, t, n, r, i) {
-		return this.bit(e * qe + i, t * qe + i, n * qe + i, (r * qe + i) * 3);
+		return this.bit(e * Ke + i, t * Ke + i, n * Ke + i, (r * Ke + i) * 3);
 	}
 	bit(e, t, n, r) {
-		let { probability: i, weights: a } = this, o = rt[i[e] >> 4], s = rt[i[t] >> 4], c = rt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / R), u = nt[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? R - u : -u;
+		let { probability: i, weights: a } = this, o = nt[i[e] >> 4], s = nt[i[t] >> 4], c = nt[i[n] >> 4], l = Math.floor((a[r] * o + a[r + 1] * s + a[r + 2] * c) / z), u = tt[Math.min(Math.max(l, -2047), 2047) + 2047], d = this.split(u), f = d ? z - u : -u;
 		return a[r] += o * f >> 14, a[r + 1] += s * f >> 14, a[r + 2] += c * f >> 14, this.learn(e, d), this.learn(t, d), this.learn(n, d), d;
 	}
 	learn(e, t) {
 		let [n, r] = [this.probability[e], this.seen[e]];
-		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * it[r] / R), r < Ke && (this.seen[e] = r + 1);
+		this.probability[e] = n + Math.floor(((t ? 65535 : 0) - n) * rt[r] / z), r < Ge && (this.seen[e] = r + 1);
 	}
 	split(e) {
-		let t = this.low + Math.floor((this.high - this.low) * e / R), n = +(this.code <= t);
+		let t = this.low + Math.floor((this.high - this.low) * e / z), n = +(this.code <= t);
 		for (n ? this.high = t : this.low = t + 1; !((this.low ^ this.high) >>> 24);) this.low = this.low << 8 >>> 0, this.high = (this.high << 8 | 255) >>> 0, this.code = (this.code << 8 | this.next()) >>> 0;
 		return n;
 	}
@@ -258,26 +258,26 @@ var at = class {
 		return this.bytes[this.at++] ?? 0;
 	}
 };
-function B(e, t, n, r = 1) {
+function V(e, t, n, r = 1) {
 	if (e.length < t) throw ue(n);
 	if (e[0] !== r) throw M(n, `coded numbers of version ${e[0]}`);
 	return new DataView(e.buffer, e.byteOffset, e.byteLength);
 }
-function ot(e, t, n, r) {
+function at(e, t, n, r) {
 	if (t > n || t > 16 * e.length + 1024) throw M(r, `${t} numbers announced`);
 }
 // eigenfield-three/src/table-decoder.ts
-var st = 12, ct = 1, lt = 3, ut = 312, dt = lt * ut, ft = 938, pt = 24, mt = 16, ht = 1722, gt = 1726, _t = 4, vt = 5;
+var ot = 12, st = 1, ct = 3, lt = 312, ut = ct * lt, dt = 938, ft = 24, pt = 16, mt = 1722, ht = 1726, gt = 4, _t = 5;
+function vt(e) {
+	return new it(e, ht, 21);
+}
 function yt(e) {
-	return new at(e, gt, 21);
+	return e.flag(ut, ut, ut, ct) ? 2 : e.flag(937, 937, 937, ct) ? st : 0;
 }
 function bt(e) {
-	return e.flag(dt, dt, dt, lt) ? 2 : e.flag(937, 937, 937, lt) ? ct : 0;
+	return Math.min(B(e), 11);
 }
-function xt(e) {
-	return Math.min(z(e), 11);
-}
-function St(e, t, n, r) {
+function xt(e, t, n, r) {
 	let i = new Float64Array(n.length), a = n.length / t, o = (e, n, r) => n < 0 || r < 0 || r >= t ? 0 : e[n * t + r], s = 0;
 	for (let c = 0; c < a; c++) for (let a = 0; a < t; a++) {
 		let [l, u] = [o(i, c, a - 1), o(i, c - 1, a)], [d, f] = [o(i, c - 1, a - 1), o(i, c - 1, a + 1)], [p, m, h] = [
@@ -285,32 +285,32 @@ function St(e, t, n, r) {
 			0,
 			s
 		];
-		r === ct ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
-		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * ut, y = e.integer(v + xt(m) * st + xt(g), v + 144 + xt(m + h), v + 144 + 24 + _ * st + xt(g + Math.abs(l)), r);
+		r === st ? (p = c === 0 ? l : a === 0 ? u : Math.max(Math.min(l, u), Math.min(Math.max(l, u), l + u - d)), m = Math.abs(l - d) + Math.abs(u - d) + Math.abs(f - u)) : (m = 2 * Math.abs(l) + 2 * Math.abs(u) + Math.abs(d) + Math.abs(f), h = Math.abs(o(i, c, a - 2)) + Math.abs(o(i, c - 2, a)));
+		let g = 2 * Math.abs(o(n, c, a)) + Math.abs(o(n, c, a - 1)) + Math.abs(o(n, c, a + 1)), _ = r === 2 ? Math.min(c, 2) * 4 + Math.min(a, 3) : Math.min(c, 1), v = r * lt, y = e.integer(v + bt(m) * ot + bt(g), v + 144 + bt(m + h), v + 144 + 24 + _ * ot + bt(g + Math.abs(l)), r);
 		i[c * t + a] = p + y, s = Math.abs(y);
 	}
 	return i;
 }
-function Ct(e, t, n, r) {
+function St(e, t, n, r) {
 	let i = new Float64Array(t * n), a = new Float64Array(n);
 	for (let o = 0; o < t; o++) {
 		let t = 0;
 		for (let s = 0; s < n; s++) {
-			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(z(a[s]), 23), d = Math.min(z(t), 23), f = e.integer(ft + l * pt + u, ft + (mt + l) * pt + d, 1706 + l, vt + l);
+			let c = r && o > 0 ? i[(o - 1) * n + s] : 0, l = Math.min(s, 15), u = Math.min(B(a[s]), 23), d = Math.min(B(t), 23), f = e.integer(dt + l * ft + u, dt + (pt + l) * ft + d, 1706 + l, _t + l);
 			i[o * n + s] = c + f, t = Math.abs(f), a[s] = Math.floor((a[s] + t + 1) / 2);
 		}
 	}
 	return i;
 }
-function wt(e, t, n, r) {
+function Ct(e, t, n, r) {
 	let i = new Float64Array(t).fill(-1), a = new Uint8Array(n), [o, s, c] = [
 		0,
 		1,
 		0
 	];
 	for (let l = 0; l < t; l++) {
-		if (s = +!!e.flag(ht + s, ht + s, 1724, _t), !s) continue;
-		let t = o + e.integer(1725, 1725, 1725, _t);
+		if (s = +!!e.flag(mt + s, mt + s, 1724, gt), !s) continue;
+		let t = o + e.integer(1725, 1725, 1725, gt);
 		if (!(t >= 0 && t < n) || a[t]) throw M(r, "a grid with a camera out of place");
 		a[t] = 1, i[l] = t, o = t + 1, c += 1;
 	}
@@ -318,20 +318,20 @@ function wt(e, t, n, r) {
 	return i;
 }
 // eigenfield-three/src/camera-decoder.ts
-var Tt = 130, V = 11, Et = 1, Dt = 2, Ot = 2, kt = 44 * I + 1024;
+var wt = 130, Tt = 11, Et = 1, Dt = 2, Ot = 2, kt = 44 * L + 1024;
 async function At(e, t) {
 	if (e[0] !== Ot) throw M(t, `version ${e[0]}`);
-	let n = await xe(Uint8Array.from(e.subarray(1)), "deflate-raw", kt, t);
+	let n = await be(Uint8Array.from(e.subarray(1)), "deflate-raw", kt, t);
 	return jt(Uint8Array.from([1, ...n]), t);
 }
 function jt(e, t) {
-	let n = B(e, Tt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Et) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
+	let n = V(e, wt, t), [r, i] = [n.getUint8(1), n.getUint32(6, !0)], a = (r & Et) !== 0, [o, s] = a ? [n.getUint16(2, !0), n.getUint16(4, !0)] : [0, 0], c = Float64Array.from({ length: 15 }, (e, t) => n.getFloat64(10 + 8 * t, !0));
 	if (r > 3 || i === 0 || !c.every(Number.isFinite)) throw M(t, "cameras that cannot be");
 	if (i > 1e5 || a && o * s < i) throw M(t, `${i} cameras`);
-	ot(e, Math.max(V * i, o * s), V * I, t);
-	let l = Tt + (a ? 132 : 0);
-	B(e, l, t);
-	let u = (e, t) => a ? n.getFloat32(Tt + 4 * (e * V + t), !0) : 0, d = yt(e.subarray(l)), f = a ? wt(d, o * s, i, t) : null, p = Ct(d, i, V, (r & Dt) !== 0);
+	at(e, Math.max(Tt * i, o * s), Tt * L, t);
+	let l = wt + (a ? 132 : 0);
+	V(e, l, t);
+	let u = (e, t) => a ? n.getFloat32(wt + 4 * (e * Tt + t), !0) : 0, d = vt(e.subarray(l)), f = a ? Ct(d, o * s, i, t) : null, p = St(d, i, Tt, (r & Dt) !== 0);
 	d.checkEnd(t);
 	let m = {
 		intrinsics: new Float32Array(5 * i),
@@ -342,14 +342,14 @@ function jt(e, t) {
 		0,
 		0,
 		...c.subarray(12)
-	], g = Nt(c[3], c[4], c[5], c[6]), _ = new Float64Array(V), v = 0;
+	], g = Nt(c[3], c[4], c[5], c[6]), _ = new Float64Array(Tt), v = 0;
 	for (let e = 0; e < (f ? f.length : i); e++) {
 		let t = f ? f[e] : e;
 		if (t < 0) continue;
 		let [n, r] = f ? [Math.floor(e / s), e % s] : [0, 0];
-		for (let e = 0; e < V; e++) {
+		for (let e = 0; e < Tt; e++) {
 			let t = c[e < 5 ? 0 : e < 8 ? 1 : 2], i = u(0, e) + u(1, e) * n + u(2, e) * r;
-			_[e] = p[v * V + e] * t + h[e] + i;
+			_[e] = p[v * Tt + e] * t + h[e] + i;
 		}
 		Mt(_, g, m, t), v += 1;
 	}
@@ -644,7 +644,7 @@ function gn(e, t, n, r, i) {
 		t[3 * a + 1],
 		t[3 * o],
 		t[3 * o + 1]
-	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? tn : -.8, _ = 1 << i >> 1, v = pn((l + d) * .5 + g * m) + _ >> i, y = pn((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(z(Math.floor((p * p + m * m) / b)), 23), S = Math.min(z(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, cn), T = Math.min(z(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(rn + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, ln);
+	], [p, m] = [d - l, f - u], h = p * (t[3 * s + 1] - u) - m * (t[3 * s] - l), g = h > 0 ? tn : -.8, _ = 1 << i >> 1, v = pn((l + d) * .5 + g * m) + _ >> i, y = pn((u + f) * .5 - g * p) + _ >> i, b = 4 ** i, x = Math.min(B(Math.floor((p * p + m * m) / b)), 23), S = Math.min(B(Math.floor(Math.abs(h) / b)), 23), C = +(p < 0) + (m < 0 ? 2 : 0) + (Math.abs(m) > Math.abs(p) ? 4 : 0), w = e.integer(x * 8 + C, 192 + S, 216 + c, cn), T = Math.min(B(Math.abs(w)), 7), [E, ee] = [577, 705], D = T * 2 + +(w > 0), O = e.integer(rn + x * 8 + C, E + D * 8 + C, ee + S * 8 + T, ln);
 	if (t[3 * n] = v + w << i, t[3 * n + 1] = y + O << i, i === 0) return;
 	let k = mn(t, a, i) + 4 * mn(t, o, i);
 	if (e.flag(an + k, 913 + mn(t, s, i), 917 + c, fn)) for (let r = 0; r < 2; r++) t[3 * n + r] += e.raw(i) - _;
@@ -652,10 +652,10 @@ function gn(e, t, n, r, i) {
 function _n(e, t, n, { a: r, b: i, o: a }) {
 	let o = 0;
 	for (let e = 0; e < 3; e++) o += (t[3 * i + e] - t[3 * r + e]) ** 2;
-	let s = Math.min(z(o), 43), c = 0;
+	let s = Math.min(B(o), 43), c = 0;
 	for (let o = 0; o < 3; o++) {
 		let l = pn(t[3 * r + o] + t[3 * i + o] - t[3 * a + o]), u = e.integer(s, nn + o * 24 + c, 116 + o * nn + s, un);
-		t[3 * n + o] = l + u, c = Math.min(z(Math.abs(u)), 23);
+		t[3 * n + o] = l + u, c = Math.min(B(Math.abs(u)), 23);
 	}
 }
 function vn(e, t, n, r, i) {
@@ -702,7 +702,7 @@ function Fn(e, t, n, r, i) {
 		if (l >= t) throw M(i, "more places than announced");
 		return l++;
 	}, p = () => {
-		let t = e.raw(z(l - 1));
+		let t = e.raw(B(l - 1));
 		if (t >= l) throw M(i, "a place that is not there yet");
 		return t;
 	}, m = () => {
@@ -855,7 +855,7 @@ function Xn(e, t, n, r, i, a, o) {
 		}
 		if (c < 0) {
 			if (e.flag(Wn + s, Wn + s, Wn + Rn, qn)) return -1;
-			if (c = e.raw(z(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
+			if (c = e.raw(B(g - 1)), c >= g || l.place[c] !== i) throw M(o, "a corner that is elsewhere");
 		}
 		for (let e of [r, (r + 2) % 3]) f[e] >= 0 && (p[e] = x(f[e], i) === c ? Bn : Vn);
 		return c;
@@ -865,7 +865,7 @@ function Xn(e, t, n, r, i, a, o) {
 		l.kinds[t] = 1;
 		let n = v;
 		if (v = t, n >= 0 && e.flag(U + 2, U + 2, U + 2, Jn)) {
-			let n = e.raw(z(t - 1));
+			let n = e.raw(B(t - 1));
 			if (n >= t || l.kinds[n] !== 1) throw M(o, "a map that is not there");
 			return l.maps.copyWithin(6 * t, 6 * n, 6 * n + 6), t;
 		}
@@ -942,7 +942,7 @@ function ur(e, t, n, r) {
 			}
 		}
 		let y = 13, b = t > 0 ? u(t - 1) : 0, x = b;
-		g > 0 && (y = Math.min(z(v - _), 12), b = h / g, x = Math.min(Math.max(fr(s), p), m));
+		g > 0 && (y = Math.min(B(v - _), 12), b = h / g, x = Math.min(Math.max(fr(s), p), m));
 		let S = b, [C, w, T] = [
 			o[3 * t],
 			o[3 * t + 1],
@@ -961,7 +961,7 @@ function ur(e, t, n, r) {
 			}
 		}
 		let E = cr(x, b), [ee, D] = [lr(S - E), lr(b - E)], O = e.integer(nr + ee * $n + D, nr + 169 + y * tr + f, nr + 169 + 280 + ee * er + y, ar), k = E + O;
-		i[3 * t + 2] = k, f = Math.min(z(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
+		i[3 * t + 2] = k, f = Math.min(B(Math.abs(O)), 19), p = t === 0 ? k : Math.min(p, k), m = t === 0 ? k : Math.max(m, k);
 	}
 }
 function dr(e, t, n) {
@@ -1007,13 +1007,13 @@ function pr(e, t, n, r, i) {
 			if (!Number.isFinite(u) || !Number.isFinite(d)) continue;
 			p += u, m += d, h += 1;
 			let v = Math.abs(l[2 * r] - l[2 * s]) + Math.abs(l[2 * r + 1] - l[2 * s + 1]);
-			_ = Math.max(_, z(v));
+			_ = Math.max(_, B(v));
 		}
 		g < 0 && (g = d), d = t;
 		let v = [g >= 0 ? l[2 * g] : 0, g >= 0 ? l[2 * g + 1] : 0], y = h > 0 ? [p / h, m / h] : v, [b, x] = [Math.min(h, 2), Math.min(_, 23)], S = rr + 144;
 		for (let n = 0; n < 2; n++) {
 			let r = e.integer(rr + (n * 24 + x) * 3 + b, S + u[0] * 24 + x, S + 576 + n * 24 + u[n], or + n);
-			l[2 * t + n] = cr(y[n], 0) + r, u[n] = Math.min(z(Math.abs(r)), 23);
+			l[2 * t + n] = cr(y[n], 0) + r, u[n] = Math.min(B(Math.abs(r)), 23);
 		}
 	}
 	return l;
@@ -1040,7 +1040,7 @@ function xr(e, t) {
 	return Sr(e, t, gr);
 }
 function Sr(e, t, n) {
-	let r = B(e, hr, t, n), [i, a, o] = [
+	let r = V(e, hr, t, n), [i, a, o] = [
 		r.getUint8(1),
 		r.getUint8(2),
 		r.getUint8(3)
@@ -1049,9 +1049,9 @@ function Sr(e, t, n) {
 		8,
 		12
 	].map((e) => r.getUint32(e, !0)), u = Float64Array.from({ length: 16 }, (e, t) => r.getFloat64(16 + 8 * t, !0));
-	if (s > Me || l > Me || c > Ne) throw M(t, `${l} vertices and ${c} faces`);
-	if (ot(e, Math.max(s, c, l), Ne, t), i > 1 || o > yr * i || a < 1 || a > vr || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
-	let d = new at(e.subarray(hr), ir, 16), f = Fn(d, s, c, {
+	if (s > je || l > je || c > Me) throw M(t, `${l} vertices and ${c} faces`);
+	if (at(e, Math.max(s, c, l), Me, t), i > 1 || o > yr * i || a < 1 || a > vr || !u.every(Number.isFinite)) throw M(t, "a lattice that cannot be");
+	let d = new it(e.subarray(hr), ir, 16), f = Fn(d, s, c, {
 		flat: i === 1,
 		fine: o
 	}, t);
@@ -1091,7 +1091,7 @@ function wr(e, { faces: t, place: n, chart: r, kinds: i, maps: a }, o, s, c, l) 
 	};
 }
 function Tr(e, t) {
-	let n = (e) => Math.abs(e) <= Ge;
+	let n = (e) => Math.abs(e) <= We;
 	if (!e.positions.every(n) || !e.uv.every(n)) throw M(t, "positions or texture coordinates that are not finite");
 	return e;
 }
@@ -1114,14 +1114,14 @@ var Er = 11, Dr = 2 ** 20, Or = 8, [kr, Ar] = [7, 8], jr = 12, [Mr, Nr, Pr, Fr] 
 	decoded = 0;
 	constructor(e, t, n) {
 		this.mesh = t, this.where = n;
-		let r = B(e, Er, n), i = t.places.length / 3, a = r.getUint32(5, !0);
+		let r = V(e, Er, n), i = t.places.length / 3, a = r.getUint32(5, !0);
 		this.frames = r.getUint16(9, !0);
 		let o = Er + this.frames;
 		if (r.getUint32(1, !0) !== i || a > i) throw M(n, `${a} vertices that move, of another mesh`);
-		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Ie) throw M(n, `${a} vertices that move in ${this.frames} frames`);
-		if (B(e, o, n), this.flags = e.slice(Er, o), this.flags.some((e) => e > kr + Ar)) throw M(n, "frames that cannot be");
-		if (ot(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Ie, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Kr(t.places, t.indices), !a) return;
-		this.decoder = new at(e.subarray(o), zr, Vr);
+		if (this.frames < 1 || this.frames > 1024 || this.frames * a > Fe) throw M(n, `${a} vertices that move in ${this.frames} frames`);
+		if (V(e, o, n), this.flags = e.slice(Er, o), this.flags.some((e) => e > kr + Ar)) throw M(n, "frames that cannot be");
+		if (at(e, this.flags.reduce((e, t) => e + (t & 1) + (t >> 1 & 1) + (t >> 2 & 1), 0) * a, 3 * Fe, n), this.moving = new Int32Array(a), this.steps = new Int32Array(a && 3 * a * (2 + this.frames)), this.off = new Int32Array(3 * a), this.around = Kr(t.places, t.indices), !a) return;
+		this.decoder = new it(e.subarray(o), zr, Vr);
 		let s = Gr(this.decoder, i, this.around);
 		if (s.reduce((e, t) => e + t, 0) !== a) throw M(n, "other vertices that move");
 		this.around = this.start(s);
@@ -1195,7 +1195,7 @@ function Ur(e, t, n) {
 	];
 }
 function Wr(e) {
-	return Math.min(z(e), 11);
+	return Math.min(B(e), 11);
 }
 function Gr(e, t, { near: n, starts: r }) {
 	let i = new Uint8Array(t), a = 0;
@@ -1230,9 +1230,9 @@ function Kr(e, t) {
 	};
 }
 // eigenfield-three/src/name-decoder.ts
-var qr = 4 * L;
+var qr = 4 * R;
 async function Jr(e, t, n) {
-	let r = Math.min(je, qr * t), i = await xe(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
+	let r = Math.min(Ae, qr * t), i = await be(Uint8Array.from(e), "deflate", r, n), a = i.length / t;
 	if (a === 0 || !Number.isInteger(a)) throw M(n, `${i.length} bytes of ${t} names`);
 	let o = new TextDecoder("utf-8", {
 		fatal: !0,
@@ -1365,7 +1365,7 @@ function ri(e, t, n) {
 	if (n && (i !== n[0] || a !== n[1])) throw M(t.where, `a picture of ${i} x ${a}, not of ${n[0]} x ${n[1]}`);
 	if (t.codec.bits !== 8 && t.codec.bits !== o) throw M(t.where, `no picture of ${t.codec.bits} bits`);
 	let s = i * a;
-	if (!s || i > 16384 || a > 32768 || s > Ee) throw M(t.where, `a picture of ${i} x ${a}`);
+	if (!s || i > 16384 || a > 32768 || s > Te) throw M(t.where, `a picture of ${i} x ${a}`);
 	return [i, a];
 }
 var ii = async (e, t, n) => {
@@ -1437,9 +1437,9 @@ async function li(e, t, n) {
 // eigenfield-three/src/triangle-decoder.ts
 var ui = 5;
 function di(e, t) {
-	let n = B(e, ui, t).getUint32(1, !0);
-	ot(e, 3 * n, 6 * I, t);
-	let r = yt(e.subarray(ui)), i = Ct(r, n, 3, !0);
+	let n = V(e, ui, t).getUint32(1, !0);
+	at(e, 3 * n, 6 * L, t);
+	let r = vt(e.subarray(ui)), i = St(r, n, 3, !0);
 	r.checkEnd(t);
 	let a = i.map((e, t) => t % 3 ? i[t - t % 3] + e : e);
 	if (!a.every((e) => e >= 0 && e < 1e5)) throw M(t, "triangles of cameras that there cannot be");
@@ -1448,12 +1448,12 @@ function di(e, t) {
 // eigenfield-three/src/weight-decoder.ts
 var fi = 14, pi = 2 ** 20;
 function mi(e, t) {
-	let n = B(e, fi, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
+	let n = V(e, fi, t), r = n.getUint8(1) === 1, [i, a] = [n.getUint32(6, !0), n.getUint32(10, !0)], o = r ? n.getUint16(2, !0) : 1, s = r ? n.getUint16(4, !0) : i;
 	if (n.getUint8(1) > 1 || i === 0) throw M(t, "weights of no camera, or of an unknown kind");
-	ot(e, o * s * Math.max(a, 1), We, t), B(e, fi + 4 * a, t);
+	at(e, o * s * Math.max(a, 1), Ue, t), V(e, fi + 4 * a, t);
 	let c = o * s;
 	if (c < i) throw M(t, "a grid with too few cells");
-	let l = yt(e.subarray(fi + 4 * a)), u = r ? wt(l, c, i, t) : null, d = u !== null && i === c, f = [
+	let l = vt(e.subarray(fi + 4 * a)), u = r ? Ct(l, c, i, t) : null, d = u !== null && i === c, f = [
 		0,
 		1,
 		2
@@ -1461,7 +1461,7 @@ function mi(e, t) {
 	for (let e = 0; e < a; e++) {
 		let r = n.getFloat32(fi + 4 * e, !0);
 		if (!(r > 0 && r < Infinity)) throw M(t, "a step that is not positive");
-		let i = bt(l), h = St(l, s, f[i], i);
+		let i = yt(l), h = xt(l, s, f[i], i);
 		if (i === 2 && !d || h.some((e) => Math.abs(e) > m)) throw M(t, `numbers of component ${e} that cannot be`);
 		f[i] = h;
 		let g = i === 2 ? hi(h, o, s) : h;
@@ -1594,7 +1594,7 @@ var W = {
 	weights: "weights-1"
 };
 function yi(e, t, n) {
-	let r = t.exists ? t.text(L) : n, i = Object.hasOwn(W, r) ? W[r] : null;
+	let r = t.exists ? t.text(R) : n, i = Object.hasOwn(W, r) ? W[r] : null;
 	if (i?.kind === e) return i;
 	throw new j("codec-unknown", `${`A ${e} stream has the codec "${r.slice(0, 60)}", which this viewer does not know`}; take a newer viewer.`, t.where);
 }
@@ -1636,7 +1636,7 @@ var G = class e {
 		if (this.raw.length > e) throw this.wrong(`longer than ${e} characters`);
 		return this.raw;
 	}
-	number(e = -Ge, t = Ge) {
+	number(e = -We, t = We) {
 		if (typeof this.raw != "number") throw this.wrong("no number");
 		if (!(this.raw >= e && this.raw <= t)) throw this.wrong(`${this.raw} is not in ${e}..${t}`);
 		return this.raw;
@@ -1646,7 +1646,7 @@ var G = class e {
 		if (!Number.isInteger(n)) throw this.wrong(`${n} is no whole number`);
 		return n;
 	}
-	numbers(e, t = -Ge, n = Ge) {
+	numbers(e, t = -We, n = We) {
 		let r = this.items(e);
 		if (r.length !== e) throw this.wrong(`${e} numbers are needed`);
 		return r.map((e) => e.number(t, n));
@@ -1680,7 +1680,7 @@ function Oi(e) {
 	let t = e.key("buffers").at(0);
 	if (t.key("uri").exists) throw t.wrong("not the binary chunk");
 	let n = t.key("byteLength").integer(0, 2 ** 32 - 1);
-	return e.key("bufferViews").items(F).map((e) => {
+	return e.key("bufferViews").items(I).map((e) => {
 		let t = e.key("byteOffset"), r = e.key("byteStride");
 		e.key("buffer").integer(0, 0);
 		let i = {
@@ -1696,7 +1696,7 @@ function ki(e) {
 	return (t) => t.integer(0, e.length - 1);
 }
 function Ai(e, t) {
-	let n = e.key("accessors"), r = n.exists ? n.items(F) : [];
+	let n = e.key("accessors"), r = n.exists ? n.items(I) : [];
 	return (e, n, i, a) => {
 		let o = r[e.integer(0, r.length - 1)];
 		if (!o) throw e.wrong("no such accessor");
@@ -1706,7 +1706,7 @@ function Ai(e, t) {
 		if (o.key("sparse").exists) throw o.wrong("sparse");
 		let c = o.key("normalized");
 		if (c.exists && c.raw !== !1) throw o.wrong("normalised");
-		let l = Di[n] ?? 1, u = o.key("count").integer(1, We);
+		let l = Di[n] ?? 1, u = o.key("count").integer(1, Ue);
 		if (a !== null && u !== a) throw o.wrong(`${a} numbers are needed, not ${u}`);
 		let d = o.key("bufferView").integer(0, t.length - 1), f = t[d];
 		if (!f) throw o.wrong("no such buffer view");
@@ -1747,10 +1747,10 @@ var Pi = 8, Fi = 16, Ii = "av1-10bit-2";
 function Li(e, t) {
 	return new j("unsupported", `The scene has ${e}, which this viewer does not draw; draw it with "eigenfield render".`, t);
 }
-function Ri(e, t = we) {
+function Ri(e, t = Ce) {
 	let [n = 0, r = 0] = e.items(2).map((e) => e.integer(1, t));
 	if (!n || !r) throw e.wrong("two numbers are needed");
-	if (n * r > Ee) throw e.wrong(`more than ${Ee} texels`);
+	if (n * r > Te) throw e.wrong(`more than ${Te} texels`);
 	return [n, r];
 }
 function zi(e, t, n, r, i) {
@@ -1771,8 +1771,8 @@ function zi(e, t, n, r, i) {
 			s += t[0] * t[1] * e * n, c += r;
 		}
 	}
-	if (c > 4096) throw e.key("planes").wrong(`more than ${De} textures`);
-	if (s > Oe) throw e.key("planes").wrong("too large when it is decoded");
+	if (c > 4096) throw e.key("planes").wrong(`more than ${Ee} textures`);
+	if (s > De) throw e.key("planes").wrong("too large when it is decoded");
 	return o;
 }
 function Bi(e, t) {
@@ -1830,7 +1830,7 @@ function Vi(e, t, n, r, i, a = !1) {
 	};
 }
 function Hi(e) {
-	let t = e.key("mimeType").text(L);
+	let t = e.key("mimeType").text(R);
 	if (!bi(t)) throw e.key("mimeType").wrong("an unknown type");
 	let n = e.key("bits"), r = n.exists ? n.integer(1, Fi) : Pi, i = bi(t, r);
 	if (!i) throw n.wrong(`${r} bits of ${t}`);
@@ -1839,8 +1839,8 @@ function Hi(e) {
 	return o;
 }
 function Ui(e, t, n) {
-	let r = e.key("at").items(De * t).map((e) => {
-		let [t = 0, n = 0] = e.numbers(2, 0, Pe);
+	let r = e.key("at").items(Ee * t).map((e) => {
+		let [t = 0, n = 0] = e.numbers(2, 0, Ne);
 		if (!Number.isInteger(t) || !Number.isInteger(n)) throw e.wrong("no whole numbers");
 		return [t, n];
 	});
@@ -1947,7 +1947,7 @@ function Zi(e, t) {
 function Qi(e, t, n) {
 	if (!e.exists) return null;
 	if (t.codec.bits === Pi) throw e.wrong(`of a mean of ${Pi} bits`);
-	let r = Ri(e.key("size"), Te), i = yi("picture", e.key("codec"), "png");
+	let r = Ri(e.key("size"), we), i = yi("picture", e.key("codec"), "png");
 	if (i !== W.png) throw e.key("codec").wrong("no PNG");
 	return {
 		view: n(e.key("bufferView")),
@@ -1959,13 +1959,13 @@ function Qi(e, t, n) {
 	};
 }
 function $i(e, t, n, r, i) {
-	let a = Ri(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Ri(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, we) : [];
+	let a = Ri(e.key("size")), [o, s] = [e.key("grid"), e.key("corner")], c = o.exists ? Ri(o) : a, [l = 0, u = 0] = s.exists ? s.numbers(2, 0, Ce) : [];
 	if (!Number.isInteger(l) || !Number.isInteger(u)) throw s.wrong("no whole numbers");
 	if (l + a[0] > c[0] || u + a[1] > c[1]) throw e.wrong("textures beyond their grid");
 	let d = e.where;
 	if (e.key("film").exists) {
 		let n = Ui(e, t, a), { textures: r } = n;
-		if (r > 4096) throw e.wrong(`more than ${De} textures`);
+		if (r > 4096) throw e.wrong(`more than ${Ee} textures`);
 		return {
 			size: a,
 			grid: c,
@@ -1976,14 +1976,14 @@ function $i(e, t, n, r, i) {
 			where: d
 		};
 	}
-	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(De).map((e) => {
+	let f = 0, p = e.key("picture"), m = p.exists ? p.object() : {}, h = e.key("textures").items(Ee).map((e) => {
 		let n = new G({
 			...m,
 			...e.object()
-		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, De) : 1;
+		}, e.where), r = n.key("count"), o = r.exists ? r.integer(1, Ee) : 1;
 		return f += o, Vi(n, t, o, a, i);
 	});
-	if (f > 4096) throw e.wrong(`more than ${De} textures`);
+	if (f > 4096) throw e.wrong(`more than ${Ee} textures`);
 	let g = e.key("codedWeights"), _ = f ? g.exists ? ji("weights", g, i) : r(e.key("weights"), "SCALAR", [wi], n * f) : null;
 	return {
 		size: a,
@@ -1998,7 +1998,7 @@ function $i(e, t, n, r, i) {
 function ea(e, t, [n, r]) {
 	let i = t * r;
 	if (t > 1 && i > 32768) throw e.wrong(`a picture of ${i} rows`);
-	if (n * i > Ee) throw e.wrong(`more than ${Ee} texels`);
+	if (n * i > Te) throw e.wrong(`more than ${Te} texels`);
 }
 // eigenfield-three/src/rights.ts
 var ta = "KHR_xmp_json_ld", na = /[\p{Cc}\p{Cs}\p{Zl}\p{Zp}\u202a-\u202e\u2066-\u2069]/u;
@@ -2030,7 +2030,7 @@ function aa(e, ...t) {
 // eigenfield-three/src/sheets.ts
 function oa(e, t) {
 	if (!e.exists) return null;
-	let n = e.key("faces").items(32).map((e) => e.integer(1, Ne));
+	let n = e.key("faces").items(32).map((e) => e.integer(1, Me));
 	if (!n.length) throw e.key("faces").wrong("no sheet");
 	return {
 		faces: n,
@@ -2059,9 +2059,9 @@ function fa(e, t, n) {
 		if (e) throw M(e.where, "a texture in a film, and no timeline");
 		return null;
 	}
-	let [i = 1, a = 1] = e.key("rate").numbers(2, 1, Ue), o = i / a;
+	let [i = 1, a = 1] = e.key("rate").numbers(2, 1, He), o = i / a;
 	if (!(Number.isInteger(i) && Number.isInteger(a)) || o > 1e3 || o < 1 / 1e3) throw e.key("rate").wrong("no rate");
-	let s = e.key("first"), c = e.key("films").items(4).map(ma), l = e.key("frames").integer(1, Le);
+	let s = e.key("first"), c = e.key("films").items(4).map(ma), l = e.key("frames").integer(1, Ie);
 	va(r, c);
 	let u = new Set([...t.map(({ mean: e }) => e), n].map((e) => c[e?.part?.film ?? -1]));
 	for (let e of c) e.opacity = e === c[n?.part?.film ?? -1], e.detail = !u.has(e);
@@ -2079,7 +2079,7 @@ function pa(e, t) {
 	let n = e.key("audio");
 	if (!n.exists) return null;
 	if (n.key("mimeType").text(64) !== la) throw n.key("mimeType").wrong(`no ${la}`);
-	let r = t.at(-1), i = r.file === null ? null : ua, a = i ? 0 : ha(n.key("offset"), r.offset + r.length), o = n.key("first"), s = n.key("length").integer(1, He);
+	let r = t.at(-1), i = r.file === null ? null : ua, a = i ? 0 : ha(n.key("offset"), r.offset + r.length), o = n.key("first"), s = n.key("length").integer(1, Ve);
 	return {
 		mimeType: la,
 		first: o.exists ? o.number() : 0,
@@ -2089,8 +2089,8 @@ function pa(e, t) {
 	};
 }
 function ma(e) {
-	let t = yi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, ca, Pe);
-	if (n % ca || r % ca || n * r > Fe) throw e.key("size").wrong(`a film of ${n} x ${r}`);
+	let t = yi("film", e.key("codec"), "film-1"), [n = 0, r = 0] = e.key("size").numbers(2, ca, Ne);
+	if (n % ca || r % ca || n * r > Pe) throw e.key("size").wrong(`a film of ${n} x ${r}`);
 	return {
 		codec: t,
 		size: [n, r],
@@ -2107,8 +2107,8 @@ function ha(e, t) {
 function ga(e, t) {
 	let [n, r] = [0, 0], i = e.key("groupFiles");
 	if (i.exists && i.raw !== !0) throw i.wrong("not true");
-	let a = e.key("groups").items(Re).map((e, t) => {
-		let a = i.exists ? `groups/${String(t).padStart(5, "0")}.eftg` : null, o = e.key("frames").integer(1, Be), s = e.key("length").integer(1, ze), c = a ? 0 : ha(e.key("offset"), r), l = e.key("sha256").text(64);
+	let a = e.key("groups").items(Le).map((e, t) => {
+		let a = i.exists ? `groups/${String(t).padStart(5, "0")}.eftg` : null, o = e.key("frames").integer(1, ze), s = e.key("length").integer(1, Re), c = a ? 0 : ha(e.key("offset"), r), l = e.key("sha256").text(64);
 		if (!da.test(l)) throw e.key("sha256").wrong("no SHA-256");
 		return [n, r] = [n + o, c + s], {
 			first: n - o,
@@ -2174,20 +2174,20 @@ var xa = [
 function Da(e) {
 	let t = new G(e, "");
 	try {
-		return t.key("extensions").key(Se).exists;
+		return t.key("extensions").key(xe).exists;
 	} catch {
 		return !1;
 	}
 }
 function Oa(e) {
-	let t = new G(e, ""), n = t.key("extensions").key(Se), r = ja(n), i = Oi(t), a = Ai(t, i), o = ki(i);
+	let t = new G(e, ""), n = t.key("extensions").key(xe), r = ja(n), i = Oi(t), a = Ai(t, i), o = ki(i);
 	Ma(t);
 	let s = Fa(t, o), c = n.key("cameras"), { count: l, names: u } = Ia(c, o), d = za(c, l), f = d.filter((e) => !e).length, p = zi(n, f, s, a, o), m = Bi(n, p), h = c.key("colour"), g = c.key("codedColour");
 	if ((h.exists || g.exists) && m.length < 3) throw h.wrong("needs three channels");
 	let _ = n.key("viewPlane"), [v, y] = [_.key("triangles"), _.key("codedTriangles")], b = n.key("generator"), [x, S] = [n.key("mesh"), n.key("timeline")], C = oa(n.key("sheets"), o);
 	return {
 		version: r,
-		generator: b.exists ? b.text(L) : "",
+		generator: b.exists ? b.text(R) : "",
 		rights: ra(e),
 		planes: p,
 		colours: m,
@@ -2198,7 +2198,7 @@ function Oa(e) {
 		sizes: Va(c, l, a),
 		colour: g.exists ? ji("weights", g, o) : h.exists ? a(h, "SCALAR", [wi], 6 * l) : null,
 		...Ha(_),
-		triangles: y.exists ? ji("triangles", y, o) : v.exists ? Pa(a(v, "SCALAR", [Si, Ci], null), 2 * I) : null,
+		triangles: y.exists ? ji("triangles", y, o) : v.exists ? Pa(a(v, "SCALAR", [Si, Ci], null), 2 * L) : null,
 		settings: Ua(n.key("settings")),
 		scores: Ua(n.key("scores")),
 		views: i,
@@ -2214,30 +2214,30 @@ function ka(e, t) {
 	if (r.exists && r.integer(0, 6) !== 4) throw r.wrong("no triangles");
 	let [i, a] = [n.key("attributes"), n.key("indices")];
 	return {
-		position: Na(t(i.key("POSITION"), "VEC3", [wi], null), Me),
-		uv: Na(t(i.key("TEXCOORD_0"), "VEC2", [wi], null), Me),
+		position: Na(t(i.key("POSITION"), "VEC3", [wi], null), je),
+		uv: Na(t(i.key("TEXCOORD_0"), "VEC2", [wi], null), je),
 		indices: Pa(t(a, "SCALAR", [
 			xi,
 			Si,
 			Ci
-		], null), Ne)
+		], null), Me)
 	};
 }
 function Aa({ planes: e, sheets: t }) {
 	return t ? [...e, t.opacity] : e;
 }
 function ja(e) {
-	let t = e.key("version").text(L);
+	let t = e.key("version").text(R);
 	if (!/^1\.\d+$/.test(t)) throw new j("version", `The scene is of format version ${t.slice(0, 20)} and this viewer reads 1.x; take a newer viewer.`, `${e.where}/version`);
 	let n = e.key("needs");
-	for (let e of n.exists ? n.items(F) : []) {
-		let t = e.text(L);
+	for (let e of n.exists ? n.items(I) : []) {
+		let t = e.text(R);
 		if (!Ca.has(t)) throw new j("needs", `The scene needs "${t.slice(0, 60)}", which this viewer cannot draw; take a newer viewer.`, e.where);
 	}
 	return t;
 }
 function Ma(e) {
-	let t = e.key("nodes").items(F), n = Array(t.length).fill(!1);
+	let t = e.key("nodes").items(I), n = Array(t.length).fill(!1);
 	for (let e of t) {
 		let r = e.key("children");
 		for (let e of r.exists ? r.items(t.length) : []) {
@@ -2246,7 +2246,7 @@ function Ma(e) {
 			n[r] = !0;
 		}
 	}
-	for (let r of e.key("scenes").items(F)) {
+	for (let r of e.key("scenes").items(I)) {
 		let e = r.key("nodes");
 		for (let r of e.exists ? e.items(t.length) : []) if (n[r.integer(0, t.length - 1)]) throw r.wrong("a node with two parents");
 	}
@@ -2268,10 +2268,10 @@ function Fa(e, t) {
 function Ia(e, t) {
 	let n = e.key("codedNames");
 	if (n.exists) return {
-		count: n.key("count").integer(1, I),
+		count: n.key("count").integer(1, L),
 		names: ji("names", n, t)
 	};
-	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Ra(r) : i.items(I).map((e) => e.text(L));
+	let r = e.key("pattern"), i = r.exists ? r : e.key("names"), a = r.exists ? Ra(r) : i.items(L).map((e) => e.text(R));
 	if (!a.length) throw i.wrong("no cameras");
 	let o = La(a);
 	if (o) throw i.wrong(o);
@@ -2284,13 +2284,13 @@ function La(e) {
 	return new Set(e).size === e.length ? e.some((e) => /[\u0000-\u001f\u007f-\u009f]/.test(e)) ? "control characters" : null : "a name stands twice";
 }
 function Ra(e) {
-	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, I));
+	let [t = 0, n = 0] = e.key("counts").items(2).map((e) => e.integer(1, L));
 	if (!n || t * n > 1e5) throw e.wrong("no counts of rows and columns");
 	let r = e.key("parts").items(wa).map((e) => {
-		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(L))];
+		if (typeof e.raw == "string") return [0, Array(t).fill(e.text(R))];
 		let r = e.key("axis").integer(0, 1), i = r ? n : t, a = e.key("texts");
 		if (a.exists) {
-			let e = a.items(i).map((e) => e.text(L));
+			let e = a.items(i).map((e) => e.text(R));
 			if (e.length !== i) throw a.wrong(`${i} texts are needed`);
 			return [r, e];
 		}
@@ -2299,7 +2299,7 @@ function Ra(e) {
 	});
 	return Array.from({ length: t * n }, (t, i) => {
 		let a = [Math.floor(i / n), i % n], o = r.map(([e, t]) => t[a[e] ?? 0]).join("");
-		if (o.length > 1024) throw e.wrong(`names of more than ${L} characters`);
+		if (o.length > 1024) throw e.wrong(`names of more than ${R} characters`);
 		return o;
 	});
 }
@@ -2324,7 +2324,7 @@ function Ba(e, t, n, r) {
 function Va(e, t, n) {
 	let r = e.key("size");
 	if (!r.exists) return n(e.key("sizes"), "SCALAR", [Ci], 2 * t);
-	let [i = 0, a = 0] = r.numbers(2, 1, ke);
+	let [i = 0, a = 0] = r.numbers(2, 1, Oe);
 	if (!Number.isInteger(i) || !Number.isInteger(a)) throw r.wrong("no whole numbers");
 	return [i, a];
 }
@@ -2359,7 +2359,7 @@ async function Ga(e, t) {
 		let [s = 0, c = 0, l = 0, u = 0, d = 0] = r.numbers.subarray(5 * n, 5 * n + 5);
 		if (!(s > Wa && c > Wa)) throw M(r.where, `focal lengths of "${t}"`);
 		let { R: f, t: p } = Za([...i.numbers.subarray(12 * n, 12 * n + 12)], i.where, t), [m = 0, h = 0] = a.numbers.subarray(2 * n, 2 * n + 2);
-		if (!m || !h || Math.max(m, h) > 65535 || m * h > Ae) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
+		if (!m || !h || Math.max(m, h) > 65535 || m * h > ke) throw M(a.where, `"${t}" is ${m} x ${h} pixels`);
 		let g = [
 			[
 				s,
@@ -3464,7 +3464,7 @@ async function rc(e) {
 	if (i < 20) throw M("8", "a length of no file");
 	let a = new DataView(await e.read(12, 20)), o = a.getUint32(0, !0);
 	if (a.getUint32(4, !0) !== ec) throw M("16", "it does not begin with JSON");
-	if (o > Ce) throw M("12", `${o} bytes of JSON`);
+	if (o > Se) throw M("12", `${o} bytes of JSON`);
 	if (20 + o > i) throw M("12", "a chunk longer than the file");
 	let s = ac(await e.read(20, 20 + o)), c = (t, n) => () => ic(e, 20 + o, i, t, n);
 	return {
@@ -3611,7 +3611,7 @@ function hc(e) {
 async function gc(e, { where: t }) {
 	let n = uc + mc(e, { where: t });
 	if (n > e.length) throw M(t, "a head longer than the group");
-	let r = await xe(e.subarray(uc, n), "deflate-raw", Ve, t);
+	let r = await be(e.subarray(uc, n), "deflate-raw", Be, t);
 	return {
 		head: new G(oc(new TextDecoder("utf-8").decode(r), t), t),
 		at: n
@@ -3875,23 +3875,23 @@ var Pc = .25, Fc = 100, Ic = 2, Lc = .25, Rc = .1, zc = class extends f {
 		this.plays && (this.plays = !1, this.clock = this.shown.position, this.sound?.rest(), this.ring.plain && this.begin(this.shown.position), this.dispatchEvent({ type: "change" }));
 	}
 	seek(e) {
-		return this.toFrame(ya(this.timeline, e));
+		return Bc(e), this.toFrame(ya(this.timeline, e));
 	}
 	toFrame(e) {
-		return this.toPosition(this.lap + Math.min(Math.max(Math.round(e), 0), this.frames - 1));
+		return Bc(e), this.toPosition(this.lap + Math.min(Math.max(Math.round(e), 0), this.frames - 1));
 	}
 	step(e) {
-		this.pause();
+		Bc(e), this.pause();
 		let t = this.ring.stepped(this.following ?? this.goal ?? this.shown.position, Math.round(e));
 		return this.loop ? this.toPosition(t < 0 ? t + this.frames : t) : this.toPosition(Math.min(Math.max(t, this.lap), this.end));
 	}
 	update(e = performance.now()) {
 		if (this.disposed) return;
-		let t = this.last === null ? 0 : Math.min((e - this.last) / 1e3, Pc);
-		if (this.last = this.plays && this.goal === null ? e : null, this.goal === null && !this.plays) return;
-		this.goal === null ? (this.advance(t), this.sound?.follow(this.first + this.clock % this.frames / this.rate, this.pace)) : this.sound?.rest();
-		let n = this.ring.take(this.goal ?? Math.floor(this.clock));
-		n && this.show(n), this.goal === null && !this.loop && this.clock >= this.end && this.ring.isOver(this.end) && this.pause();
+		let t = Math.max(e, this.last ?? e), n = this.last === null ? 0 : Math.min((t - this.last) / 1e3, Pc);
+		if (this.last = this.plays && this.goal === null ? t : null, this.goal === null && !this.plays) return;
+		this.goal === null ? (this.advance(n), this.sound?.follow(this.first + this.clock % this.frames / this.rate, this.pace)) : this.sound?.rest();
+		let r = this.ring.take(this.goal ?? Math.floor(this.clock));
+		r && this.show(r), this.goal === null && !this.loop && this.clock >= this.end && this.ring.isOver(this.end) && this.pause();
 	}
 	dispose() {
 		this.disposed = !0, this.plays = !1, globalThis.document?.removeEventListener("visibilitychange", this.hide), this.ring.dispose(), this.sound?.dispose(), this.settle();
@@ -3961,8 +3961,13 @@ var Pc = .25, Fc = 100, Ic = 2, Lc = .25, Rc = .1, zc = class extends f {
 		let n = this.goal !== null && q(this.timeline, this.goal % this.frames);
 		n === !1 || t !== null && n !== t || (this.goal !== null && (this.clock = this.goal), this.goal = this.following = null, this.settle());
 	}
-}, Bc = 65535;
-function Vc(e, t) {
+};
+function Bc(e) {
+	if (!Number.isFinite(e)) throw RangeError("Times and numbers of frames are finite.");
+}
+// eigenfield-three/src/proxy.ts
+var Vc = 65535;
+function Hc(e, t) {
 	let n = e.getAttribute("position"), r = e.getAttribute("uv"), { index: i } = e;
 	if (!i) throw new j("damaged", "The proxy mesh has no triangles; make or download the file again.");
 	if (r.count !== n.count) throw M(t.uv.where, `${r.count} for ${n.count} vertices`);
@@ -3972,37 +3977,37 @@ function Vc(e, t) {
 	}
 	for (let e of i.array) if (e >= n.count) throw M(t.indices.where, `no vertex ${e}`);
 }
-async function Hc({ view: e, codec: t, where: n }, r) {
+async function Uc({ view: e, codec: t, where: n }, r) {
 	let i = t.decode(new Uint8Array(await r(e)), n);
 	if (!i.indices.length) throw M(n, "a mesh without faces");
 	return i;
 }
-function Uc({ positions: n, uv: r, indices: i }) {
+function Wc({ positions: n, uv: r, indices: i }) {
 	let a = new t();
 	a.setAttribute("position", new e(n.slice(), 3)), a.setAttribute("uv", new e(r, 2));
-	let o = n.length / 3 <= Bc;
+	let o = n.length / 3 <= Vc;
 	return a.setIndex(new e(o ? Uint16Array.from(i) : i, 1)), a;
 }
-function Wc(e) {
+function Gc(e) {
 	return {
 		vertices: e.getAttribute("position").count,
 		triangles: (e.index?.count ?? 0) / 3
 	};
 }
 // eigenfield-three/src/footprint.ts
-var Gc = 256;
-function Kc(e, t, n) {
+var Kc = 256;
+function qc(e, t, n) {
 	let { index: r } = e, i = e.getAttribute("position"), a = e.getAttribute("uv");
 	if (!r || !i || !a) return 0;
-	let o = r.count / 3, s = Math.max(1, Math.floor(o / Gc)), c = [];
+	let o = r.count / 3, s = Math.max(1, Math.floor(o / Kc)), c = [];
 	for (let e = 0; e < o; e += s) {
 		let o = [
 			0,
 			1,
 			2
-		].map((t) => r.getX(3 * e + t)), s = o.map((e) => qc(t, i.getX(e), i.getY(e), i.getZ(e))), l = Jc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
+		].map((t) => r.getX(3 * e + t)), s = o.map((e) => Jc(t, i.getX(e), i.getY(e), i.getZ(e))), l = Yc(s), [u = NaN, d = NaN] = [0, 1].map((e) => s.reduce((t, n) => t + (n[e] ?? NaN) / 3, 0));
 		if (!(l > 0 && u >= 0 && d >= 0 && u < t.width && d < t.height)) continue;
-		let f = Jc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
+		let f = Yc(o.map((e) => [a.getX(e) * n[0], a.getY(e) * n[1]]));
 		c.push({
 			footprint: Math.sqrt(f / l),
 			area: l
@@ -4012,7 +4017,7 @@ function Kc(e, t, n) {
 	let l = c.reduce((e, { area: t }) => e + t, 0) / 2, u = 0;
 	return c.find(({ area: e }) => (u += e) >= l)?.footprint ?? 0;
 }
-function qc({ K: e, R: t, t: n }, r, i, a) {
+function Jc({ K: e, R: t, t: n }, r, i, a) {
 	let o = (e) => t[e][0] * r + t[e][1] * i + t[e][2] * a + n[e], [s, c, l] = [
 		o(0),
 		o(1),
@@ -4020,12 +4025,12 @@ function qc({ K: e, R: t, t: n }, r, i, a) {
 	];
 	return l > 0 ? [(e[0][0] * s + e[0][1] * c) / l + e[0][2], e[1][1] * c / l + e[1][2]] : [NaN, NaN];
 }
-function Jc(e) {
+function Yc(e) {
 	let [[t = 0, n = 0] = [], [r = 0, i = 0] = [], [a = 0, o = 0] = []] = e;
 	return Math.abs((r - t) * (o - n) - (i - n) * (a - t)) / 2;
 }
 // eigenfield-three/src/sheet-stack.ts
-var Yc = "sheets", Xc = 16, Zc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", Qc = `${Ns}${Ps}
+var Xc = "sheets", Zc = 16, Qc = "\nprecision highp float;\nin vec3 position;\nvoid main() { gl_Position = vec4(position, 1.0); }\n", $c = `${Ns}${Ps}
 uniform sampler2D sheets;      // R, G, B times coverage, and coverage
 uniform sampler2D solid;       // depth of what is at least half opaque
 uniform sampler2D nearest;     // depth of the last sheet, within its slice
@@ -4050,7 +4055,7 @@ void main() {
   gl_FragDepth = depth;
   fragment = colour;
 }
-`, $c = new ae(), el = class {
+`, el = new ae(), tl = class {
 	material;
 	scene = new k();
 	camera = new n();
@@ -4066,10 +4071,10 @@ void main() {
 		}, this.scene.add(this.sheets), this.scene.matrixWorldAutoUpdate = this.camera.matrixWorldAutoUpdate = !1;
 		let { shown: n, photograph: r, toPhotograph: i } = t.uniforms;
 		this.screen = new O({
-			name: Yc,
+			name: Xc,
 			glslVersion: h,
-			vertexShader: Zc,
-			fragmentShader: Qc,
+			vertexShader: Qc,
+			fragmentShader: $c,
 			uniforms: {
 				shown: n,
 				photograph: r,
@@ -4099,7 +4104,7 @@ void main() {
 		this.everywhere.setAttribute("position", new e(a, 3));
 	}
 	get bytes() {
-		return this.target ? Xc * this.target.width * this.target.height : 0;
+		return this.target ? Zc * this.target.width * this.target.height : 0;
 	}
 	setGeometry(e, t) {
 		e.clearGroups();
@@ -4117,7 +4122,7 @@ void main() {
 	attach(e, t) {
 		for (let t of [e.material].flat()) t.visible = !1;
 		let n = new S(this.everywhere, this.screen);
-		n.name = Yc, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
+		n.name = Xc, n.raycast = () => void 0, n.onBeforeRender = (n, r, i) => {
 			t(n, i), this.draw(n, i, e);
 		}, e.add(n);
 	}
@@ -4128,9 +4133,9 @@ void main() {
 		this.target?.dispose(), this.depth.dispose(), this.screen.dispose();
 	}
 	draw(e, t, n) {
-		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport($c);
+		let { x: r, y: i, z: a, w: o } = t.viewport ?? e.getCurrentViewport(el);
 		if (!a || !o) return;
-		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = tl(a, o));
+		(this.target?.width !== a || this.target.height !== o) && (this.target?.dispose(), this.target = nl(a, o));
 		let { target: s } = this;
 		this.sheets.matrixWorld.copy(n.matrixWorld), this.camera.matrixWorld.copy(t.matrixWorld), this.camera.matrixWorldInverse.copy(t.matrixWorldInverse), this.camera.projectionMatrix.copy(t.projectionMatrix), _s(e, t, () => {
 			e.setRenderTarget(s), e.state.buffers.color.setMask(!0), e.clear(!0, !0, !1), e.render(this.scene, this.camera);
@@ -4139,7 +4144,7 @@ void main() {
 		this.set("sheets", s.textures[0]), this.set("solid", s.textures[1]), this.set("nearest", s.depthTexture), c.corner?.value.set(r, i), c.size?.value.set(a, o), (c.toPlace?.value).multiplyMatrices(t.projectionMatrix, t.matrixWorldInverse).multiply(n.matrixWorld).invert(), this.screen.uniformsNeedUpdate = !0;
 	}
 };
-function tl(e, t) {
+function nl(e, t) {
 	let n = new l(e, t, re);
 	n.format = c;
 	let r = new oe(e, t, {
@@ -4153,7 +4158,7 @@ function tl(e, t) {
 	return i && (i.type = ne), r;
 }
 // eigenfield-three/src/surface.ts
-var nl = class {
+var rl = class {
 	meshes;
 	faces;
 	reference;
@@ -4169,7 +4174,7 @@ var nl = class {
 		if (!i) throw Error("a field needs a mesh");
 		this.mesh = i;
 		let a = [i.material].flat().some((e) => e.side !== m);
-		this.material = Vs(a, t !== null), this.stack = t && new el(this.material);
+		this.material = Vs(a, t !== null), this.stack = t && new tl(this.material);
 		for (let t of e) {
 			let e = (e, n) => r(e, n, t);
 			this.stack ? this.stack.attach(t, e) : (t.material = this.material, t.onBeforeRender = (t, n, r) => e(t, r));
@@ -4196,59 +4201,59 @@ var nl = class {
 		e.boundingBox = e.boundingSphere = null, this.faces = t, this.version += 1, n !== e && (this.laid = this.version), this.show(t);
 	}
 	show(e) {
-		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? Kc(this.geometry, this.reference, [1, 1]) : 0;
+		e && this.stack?.setGeometry(this.geometry, e), this.detail = this.reference ? qc(this.geometry, this.reference, [1, 1]) : 0;
 	}
 	dispose() {
 		this.stack?.dispose(), this.material.dispose(), this.geometry.dispose();
 	}
 };
 // eigenfield-three/src/gpu.ts
-function rl(e) {
+function il(e) {
 	let t = e.getContext();
 	if (!(t instanceof WebGL2RenderingContext)) throw new j("unsupported", "Eigen textures need WebGL 2; use a newer browser.");
 	if ((t.getExtension("EXT_color_buffer_float") ?? t.getExtension("EXT_color_buffer_half_float")) || t.isContextLost()) return t;
 	throw new j("unsupported", "The graphics of this device draw no half-floats; use a newer device or browser, or switch graphics acceleration on.");
 }
-function il(e, t) {
+function al(e, t) {
 	return {
 		side: e.getParameter(e.MAX_TEXTURE_SIZE),
 		layers: e.getParameter(e.MAX_ARRAY_TEXTURE_LAYERS),
 		memory: t
 	};
 }
-function al(e, { components: t, halves: n }) {
+function ol(e, { components: t, halves: n }) {
 	return t > 2 ? n ? e.RGBA16F : e.RGBA8 : t > 1 ? n ? e.RG16F : e.RG8 : n ? e.R16F : e.R8;
 }
-function ol(e, [t, n], r, i, a) {
-	return ul(e, e.TEXTURE_2D_ARRAY, () => {
-		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, al(e, a), t, n, r);
+function sl(e, [t, n], r, i, a) {
+	return dl(e, e.TEXTURE_2D_ARRAY, () => {
+		e.texStorage3D(e.TEXTURE_2D_ARRAY, 1, ol(e, a), t, n, r);
 		for (let t of [e.TEXTURE_WRAP_S, e.TEXTURE_WRAP_T]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, e.CLAMP_TO_EDGE);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D_ARRAY, t, i ? e.LINEAR : e.NEAREST);
 	});
 }
-function sl(e, t, n, r) {
-	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
-	dl(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
-}
 function cl(e, t, n, r) {
-	dl(e, e.TEXTURE_2D_ARRAY, t, () => {
+	let { width: i, height: a } = n, o = r > 2 ? e.RGBA : r > 1 ? e.RG : e.RED;
+	fl(e, e.TEXTURE_2D_ARRAY, t, () => e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, 0, i, a, 1, o, e.UNSIGNED_BYTE, n));
+}
+function ll(e, t, n, r) {
+	fl(e, e.TEXTURE_2D_ARRAY, t, () => {
 		e.pixelStorei(e.UNPACK_ALIGNMENT, 1), r.forEach(({ data: t, width: r, height: i, stride: a }, o) => {
 			e.pixelStorei(e.UNPACK_ROW_LENGTH, a / 2), e.texSubImage3D(e.TEXTURE_2D_ARRAY, 0, 0, 0, n + o, r, i, 1, e.RG, e.UNSIGNED_BYTE, t);
 		});
 	});
 }
-function ll(e, [t, n], r) {
-	return ul(e, e.TEXTURE_2D, () => {
-		e.texStorage2D(e.TEXTURE_2D, 1, al(e, r), t, n);
+function ul(e, [t, n], r) {
+	return dl(e, e.TEXTURE_2D, () => {
+		e.texStorage2D(e.TEXTURE_2D, 1, ol(e, r), t, n);
 		for (let t of [e.TEXTURE_MIN_FILTER, e.TEXTURE_MAG_FILTER]) e.texParameteri(e.TEXTURE_2D, t, e.NEAREST);
 	});
 }
-function ul(e, t, n) {
+function dl(e, t, n) {
 	for (; e.getError() !== e.NO_ERROR && !e.isContextLost(););
 	let r = e.createTexture();
-	return dl(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
+	return fl(e, t, r, n), e.getError() === e.OUT_OF_MEMORY ? (e.deleteTexture(r), null) : r;
 }
-function dl(e, t, n, r) {
+function fl(e, t, n, r) {
 	let i = t === e.TEXTURE_2D_ARRAY, a = e.getParameter(i ? e.TEXTURE_BINDING_2D_ARRAY : e.TEXTURE_BINDING_2D), o = [
 		[e.UNPACK_FLIP_Y_WEBGL, !1],
 		[e.UNPACK_PREMULTIPLY_ALPHA_WEBGL, !1],
@@ -4262,7 +4267,7 @@ function dl(e, t, n, r) {
 	], s = o.map(([t]) => [t, e.getParameter(t)]), c = e.getParameter(e.PIXEL_UNPACK_BUFFER_BINDING);
 	c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, null), o.forEach(([t, n]) => e.pixelStorei(t, n)), e.bindTexture(t, n), r(), e.bindTexture(t, a), s.forEach(([t, n]) => e.pixelStorei(t, n)), c && e.bindBuffer(e.PIXEL_UNPACK_BUFFER, c);
 }
-function fl(e, t, n) {
+function pl(e, t, n) {
 	let r = e.createProgram();
 	for (let [i, a] of [[e.VERTEX_SHADER, t], [e.FRAGMENT_SHADER, n]]) {
 		let t = e.createShader(i);
@@ -4270,7 +4275,7 @@ function fl(e, t, n) {
 	}
 	return e.linkProgram(r), r;
 }
-function pl(e, t, n, r) {
+function ml(e, t, n, r) {
 	if (!n) {
 		r();
 		return;
@@ -4278,9 +4283,9 @@ function pl(e, t, n, r) {
 	let i = e.getParameter(e.ACTIVE_TEXTURE);
 	e.activeTexture(e.TEXTURE0 + t);
 	let a = e.getParameter(e.SAMPLER_BINDING);
-	e.bindSampler(t, null), dl(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
+	e.bindSampler(t, null), fl(e, e.TEXTURE_2D, n, r), e.bindSampler(t, a), e.activeTexture(i);
 }
-function ml(e, t) {
+function hl(e, t) {
 	let n = [
 		e.BLEND,
 		e.CULL_FACE,
@@ -4295,13 +4300,13 @@ function ml(e, t) {
 	n.forEach((t) => e.disable(t)), t(), n.forEach((t) => e.enable(t)), e.useProgram(r && e.isProgram(r) ? r : null), e.bindVertexArray(i), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, a), e.viewport(o, s, c, l), e.colorMask(u ?? !0, d ?? !0, f ?? !0, p ?? !0);
 }
 // eigenfield-three/src/charts.ts
-function hl(e, t) {
-	let n = fl(e, ...Dc), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
+function gl(e, t) {
+	let n = pl(e, ...Dc), r = e.createFramebuffer(), i = null, a = (t, i, a) => {
 		let { index: o } = t, s = t.getAttribute("uv"), c = Float32Array.from({ length: 2 * (o?.count ?? 0) }, (e, t) => {
 			let n = o?.getX(t >> 1) ?? 0;
 			return t % 2 ? s.getY(n) : s.getX(n);
 		}), [l, u] = [e.createVertexArray(), e.createBuffer()], d = e.getParameter(e.ARRAY_BUFFER_BINDING);
-		ml(e, () => {
+		hl(e, () => {
 			e.useProgram(n), e.bindVertexArray(l), e.bindBuffer(e.ARRAY_BUFFER, u), e.bufferData(e.ARRAY_BUFFER, c, e.STREAM_DRAW);
 			let t = e.getAttribLocation(n, "uv");
 			e.enableVertexAttribArray(t), e.vertexAttribPointer(t, 2, e.FLOAT, !1, 0, 0), e.bindFramebuffer(e.DRAW_FRAMEBUFFER, r), e.framebufferTexture2D(e.DRAW_FRAMEBUFFER, e.COLOR_ATTACHMENT0, e.TEXTURE_2D, a, 0), e.viewport(0, 0, ...i), e.colorMask(!0, !0, !0, !0), e.drawArrays(e.TRIANGLES, 0, c.length / 2);
@@ -4312,7 +4317,7 @@ function hl(e, t) {
 			let { geometry: r } = t;
 			if (i?.grid.join() !== n.join() || i.geometry !== r) {
 				e.deleteTexture(i?.texture ?? null);
-				let t = ll(e, n, {
+				let t = ul(e, n, {
 					components: 1,
 					halves: !1
 				});
@@ -4330,7 +4335,7 @@ function hl(e, t) {
 	};
 }
 // eigenfield-three/src/packing.ts
-var gl = [
+var _l = [
 	"precisions",
 	"covered",
 	"factors",
@@ -4341,14 +4346,14 @@ var gl = [
 	"nodes",
 	"zero"
 ];
-function _l(e, t, n, r) {
+function vl(e, t, n, r) {
 	let [i, a, o] = [
-		fl(e, Cc, wc),
-		fl(e, Cc, Tc),
-		fl(e, Cc, Ec)
-	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && hl(e, r), u = (t) => Object.fromEntries(gl.map((n) => [n, e.getUniformLocation(t, n)])), [d, f] = [u(i), u(a)], p = (t, n, r, i, a, o, s) => {
+		pl(e, Cc, wc),
+		pl(e, Cc, Tc),
+		pl(e, Cc, Ec)
+	], [s, c] = [e.createFramebuffer(), e.createVertexArray()], l = t.smaller && gl(e, r), u = (t) => Object.fromEntries(_l.map((n) => [n, e.getUniformLocation(t, n)])), [d, f] = [u(i), u(a)], p = (t, n, r, i, a, o, s) => {
 		let { picture: c, rows: l } = n, { size: u, corner: d, unit: f, codes: p } = i;
-		vl(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
+		yl(c) ? e.uniform4f(t.factors, 255 * f, 65280 * f, 0, 0) : e.uniform4fv(t.factors, [
 			0,
 			1,
 			2,
@@ -4360,25 +4365,25 @@ function _l(e, t, n, r) {
 		m(t, n), e.colorMask(r === 0, r === 1, r === 2, r === 3);
 	}, g = (r, s, u, g, _, v) => {
 		let { picture: y, row: b, rows: x } = r, [S, C] = _.size, w = S < y.width || C < x ? t.smaller : null, T = Math.max(1, Math.floor((w ? n - 2 : n) * C / x)), E = (w && l?.covered(_.grid)) ?? null;
-		pl(e, 0, s, () => {
+		ml(e, 0, s, () => {
 			for (let t = 0; t < C; t += T) {
 				let n = Math.min(T, C - t), o = Math.floor(t * x / C), s = Math.ceil((t + n) * x / C);
-				vl(y) ? bl(e, y, b + o, s - o) : yl(e, y, b + o, s - o), pl(e, 2, E, () => ml(e, () => {
+				yl(y) ? xl(e, y, b + o, s - o) : bl(e, y, b + o, s - o), ml(e, 2, E, () => hl(e, () => {
 					let s = w || v ? f : d;
 					e.useProgram(w || v ? a : i), e.bindVertexArray(c), e.uniform1i(s.precisions, +!!v), e.uniform1i(s.covered, w ? 2 : 0), e.uniform2i(s.nodes, v?.precision.width ?? 0, v?.precision.height ?? 0), e.uniform1f(s.zero, v?.zero ?? 0), w ? (m(w, null), e.colorMask(!0, !0, !0, !0)) : h(u, g), p(s, r, g.channel, _, o, t, n);
 				}));
 			}
-		}), w && pl(e, 0, w, () => ml(e, () => {
+		}), w && ml(e, 0, w, () => hl(e, () => {
 			e.useProgram(o), e.bindVertexArray(c), e.uniform2i(e.getUniformLocation(o, "size"), S, C), h(u, g), e.viewport(0, 0, S, C), e.drawArrays(e.TRIANGLES, 0, 3);
 		}));
 	};
 	return {
 		put(n, r, i, a, o = null) {
-			let s = vl(n.picture) ? t.codes : t.picture;
+			let s = yl(n.picture) ? t.codes : t.picture;
 			if (!s) return;
 			let c = () => i.forEach((e) => g(n, s, r, e, a, o));
-			o ? pl(e, 1, t.precision, () => {
-				yl(e, o.precision, 0, o.precision.height), c();
+			o ? ml(e, 1, t.precision, () => {
+				bl(e, o.precision, 0, o.precision.height), c();
 			}) : c();
 		},
 		free() {
@@ -4392,17 +4397,17 @@ function _l(e, t, n, r) {
 		}
 	};
 }
-function vl(e) {
+function yl(e) {
 	return "data" in e;
 }
-function yl(e, t, n, r) {
+function bl(e, t, n, r) {
 	e.pixelStorei(e.UNPACK_SKIP_ROWS, n), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, t.width, r, e.RGBA, e.UNSIGNED_BYTE, t);
 }
-function bl(e, { data: t, width: n, stride: r }, i, a) {
+function xl(e, { data: t, width: n, stride: r }, i, a) {
 	e.pixelStorei(e.UNPACK_ALIGNMENT, 1), e.pixelStorei(e.UNPACK_ROW_LENGTH, r / 2), e.texSubImage2D(e.TEXTURE_2D, 0, 0, 0, n, a, e.RG, e.UNSIGNED_BYTE, t, i * r);
 }
 // eigenfield-three/src/textures.ts
-var xl = class {
+var Sl = class {
 	parts;
 	source;
 	surface;
@@ -4440,7 +4445,7 @@ var xl = class {
 				tenBits: Ki([t]),
 				opacity: r
 			};
-		}), l = Aa(i).some(({ mean: e }) => e.part), u = Cl(n.geometry);
+		}), l = Aa(i).some(({ mean: e }) => e.part), u = wl(n.geometry);
 		this.needs = {
 			atlas: a.size,
 			means: c,
@@ -4461,10 +4466,10 @@ var xl = class {
 		return Math.min(t, ...e);
 	}
 	get bytes() {
-		return this.plan ? this.plan.bytes - this.needs.geometry + Cl(this.surface.geometry) : 0;
+		return this.plan ? this.plan.bytes - this.needs.geometry + wl(this.surface.geometry) : 0;
 	}
-	get attached() {
-		return this.renderer !== null || this.disposed;
+	serves(e) {
+		return this.disposed || this.renderer === e ? !0 : this.renderer !== null && !this.renderer.getContext().isContextLost();
 	}
 	attach(e) {
 		if (this.disposed) return;
@@ -4491,7 +4496,7 @@ var xl = class {
 		this.renderer && this.attach(this.renderer);
 	};
 	async load(e, t) {
-		let n = rl(e);
+		let n = il(e);
 		if (n.isContextLost()) return;
 		let { packer: r, plan: i } = this.makeRoom(n);
 		this.plan = i, this.packer = r, this.onPlan(i), await this.source.fill(this.filling(n, i, t)), t.aborted || this.onComplete();
@@ -4522,7 +4527,7 @@ var xl = class {
 		];
 		if (!(u instanceof WebGLTexture) || !d || !f) return;
 		let { size: p, grid: m, corner: h, channels: g, tenBits: _ } = f;
-		l && cl(e, u, g * r, Sl(i.slice(0, g * (o - r))));
+		l && ll(e, u, g * r, Cl(i.slice(0, g * (o - r))));
 		let v = Ji(a, c && _), y = {
 			size: X(p, s),
 			grid: m,
@@ -4542,10 +4547,10 @@ var xl = class {
 	putMean(e, t, n, { pieces: r, precision: i }) {
 		let [a, o] = [this.means[n]?.sourceTexture, Aa(this.parts.scene)[n]], { size: s, tenBits: c } = this.needs.means[n] ?? {};
 		if (!(a instanceof WebGLTexture) || !o || !s) return;
-		if (this.stillVersions[n] = this.version += 1, t.words) return cl(e, a, 0, Sl(r));
+		if (this.stillVersions[n] = this.version += 1, t.words) return ll(e, a, 0, Cl(r));
 		let { mean: l, channels: u } = o, d = X(s, t.meanDown), [f] = r;
 		if (f && r.length === 1 && "close" in f.picture && !c && d.join() === s.join()) {
-			sl(e, a, f.picture, u);
+			cl(e, a, f.picture, u);
 			return;
 		}
 		let p = {
@@ -4579,19 +4584,19 @@ var xl = class {
 	}
 	makeRoom(e) {
 		let { means: t, bases: n } = this.needs;
-		this.needs.geometry = Cl(this.surface.geometry);
+		this.needs.geometry = wl(this.surface.geometry);
 		let r = this.parts.scene.planes.flatMap(({ precision: e }) => e ? [e.size] : []);
 		for (let i = this.options.memory ?? Mo();; i /= 2) {
-			let a = Ho(this.needs, il(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l, words: u } = a, d = o !== s, f = [...t.map(({ size: t, channels: n, tenBits: r }) => {
-				if (u) return ol(e, t, n, !1, To);
+			let a = Ho(this.needs, al(e, i)), { meanDown: o, scaleDown: s, usable: c, halves: l, words: u } = a, d = o !== s, f = [...t.map(({ size: t, channels: n, tenBits: r }) => {
+				if (u) return sl(e, t, n, !1, To);
 				let i = {
 					components: n,
 					halves: r
 				};
-				return ol(e, X(t, o), Fo(n), !1, i);
+				return sl(e, X(t, o), Fo(n), !1, i);
 			}), ...n.map(({ size: t, channels: n, count: r, tenBits: i }) => {
 				let a = Math.min(r, c);
-				return u && a ? ol(e, t, n * a, !1, To) : ol(e, a ? X(t, s) : [1, 1], a ? Io(a, n) : 1, d, {
+				return u && a ? sl(e, t, n * a, !1, To) : sl(e, a ? X(t, s) : [1, 1], a ? Io(a, n) : 1, d, {
 					components: Math.max(1, a),
 					halves: l && i
 				});
@@ -4606,9 +4611,9 @@ var xl = class {
 				m.picture,
 				m.codes,
 				m.smaller
-			].map((t) => t ? ll(e, t.size, t.format) : null), v = ll(e, Ko(r), wo);
+			].map((t) => t ? ul(e, t.size, t.format) : null), v = ul(e, Ko(r), wo);
 			if (h && v && (g || !m.codes) && (_ || !m.smaller) && !f.includes(null)) return p(), {
-				packer: _l(e, {
+				packer: vl(e, {
 					picture: h,
 					codes: g ?? null,
 					precision: v,
@@ -4627,14 +4632,14 @@ var xl = class {
 		}
 	}
 };
-function Sl(e) {
+function Cl(e) {
 	return e.map(({ picture: e }) => e);
 }
-function Cl({ attributes: e, index: t }) {
+function wl({ attributes: e, index: t }) {
 	return Object.values(e).reduce((e, t) => e + t.array.byteLength, 0) + (t?.array.byteLength ?? 0);
 }
 // eigenfield-three/src/field.ts
-var wl = 1.5, Tl = .001, El = class extends f {
+var Tl = 1.5, El = .001, Dl = class extends f {
 	parts;
 	source;
 	mesh;
@@ -4654,6 +4659,7 @@ var wl = 1.5, Tl = .001, El = class extends f {
 	lastByRay = !1;
 	player;
 	complete;
+	giveUp = () => void 0;
 	surface;
 	textures;
 	weights;
@@ -4671,8 +4677,8 @@ var wl = 1.5, Tl = .001, El = class extends f {
 	constructor(e, t, n = {}) {
 		super(), this.parts = e, this.source = t;
 		let { scene: r, info: i } = e, a = r.sheets?.faces ?? null;
-		this.surface = new nl(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = ro(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new xl(e, t, this.surface, n), this.complete = new Promise((e, t) => {
-			this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
+		this.surface = new rl(e.meshes, a, i.cameras[i.reference], (...e) => this.prepare(...e)), this.mesh = this.surface.mesh, this.info = i, this.total = ro(r), this.filter = n.filter ?? "bicubic", this.weightMode = i.facesPlane ? "ray" : "eye", this.encoded = i.cameras.filter((e, t) => !i.heldOut[t]), this.weights = this.weightsOf(e.omega), this.group = e.clip && e.clip.group, this.player = e.clip && this.makePlayer(e.clip), this.moved = e.clip && this.surface.geometry, e.clip && this.shape(e.clip.group, 0, e.clip.mesh, !1), this.textures = new Sl(e, t, this.surface, n), this.complete = new Promise((e, t) => {
+			this.giveUp = t, this.addEventListener("complete", () => e()), this.addEventListener("error", ({ error: e }) => t(e));
 		}), this.complete.catch(() => void 0), this.listen(), n.renderer && this.textures.attach(n.renderer);
 	}
 	get usable() {
@@ -4709,7 +4715,7 @@ var wl = 1.5, Tl = .001, El = class extends f {
 		this.textures.attach(e);
 	}
 	dispose() {
-		this.player?.dispose(), this.textures.dispose(), this.freeComposers(), this.surface.dispose(), this.weights.dispose();
+		this.giveUp(new DOMException("The field was disposed of.", "AbortError")), this.player?.dispose(), this.textures.dispose(), this.freeComposers(), this.surface.dispose(), this.weights.dispose();
 	}
 	listen() {
 		this.textures.onPlan = (e) => {
@@ -4721,7 +4727,7 @@ var wl = 1.5, Tl = .001, El = class extends f {
 		}, this.textures.onTexture = () => this.dispatchEvent({ type: "texture" }), this.textures.onComplete = () => this.dispatchEvent({ type: "complete" }), this.textures.onError = (e) => this.fail(e);
 	}
 	finestOf([e, t], n) {
-		return wl * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
+		return Tl * Math.max(1, this.surface.detail * Math.sqrt(e * t) / n);
 	}
 	weightsOf(e) {
 		let { scene: t, info: n, weights: r } = this.parts;
@@ -4741,7 +4747,7 @@ var wl = 1.5, Tl = .001, El = class extends f {
 	}
 	shape({ mesh: e, motion: t }, n, r, i) {
 		if (this.surface.geometry !== this.moved || e === r && !t && !i) return;
-		let a = e === r ? this.moved : Uc(e), o = a.getAttribute("position");
+		let a = e === r ? this.moved : Wc(e), o = a.getAttribute("position");
 		t ? t.place(n, o.array) : o.copyArray(e.positions), o.needsUpdate = !0, this.moved = a, this.surface.setGeometry(a);
 	}
 	enter(e) {
@@ -4749,8 +4755,8 @@ var wl = 1.5, Tl = .001, El = class extends f {
 		this.group = e, this.weights.dispose(), this.weights = this.weightsOf(e.omega), fc(t, e), n && kc(this.summed.parts, t, this.textures, n);
 	}
 	prepare(e, t, n) {
-		this.textures.attached || this.textures.attach(e);
-		let r = kl(t, n), [i, a] = lo(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
+		this.textures.serves(e) || this.textures.attach(e);
+		let r = Al(t, n), [i, a] = lo(this.info.viewPlane, r), o = this.camera !== null && this.info.cameras[this.camera] ? this.camera : null, s = o === null ? this.componentWeights(i, a) : this.cameraWeights(o), c = o === null && this.weightMode === "ray" && this.info.facesPlane && !this.isOnPlane(r), { material: l } = this.surface;
 		this.setView(), this.setExposure(o, [i, a]);
 		let u = ks[this.filter];
 		l.defines.BICUBIC !== u && (l.defines.BICUBIC = u, l.needsUpdate = !0), l.uniformsNeedUpdate = !0, this.compose(e, t, this.recipe(s, c ? r : null)), e.info.render.frame !== this.frame && (this.lastWeights = []), this.frame = e.info.render.frame, this.lastWeights.push(s), this.lastByRay = c;
@@ -4819,29 +4825,29 @@ var wl = 1.5, Tl = .001, El = class extends f {
 	}
 	isOnPlane(e) {
 		let { origin: t, normal: n, extent: r } = this.info.viewPlane, i = e.reduce((e, r, i) => e + (r - (t[i] ?? 0)) * (n[i] ?? 0), 0);
-		return Math.abs(i) <= Tl * Math.max(...r);
+		return Math.abs(i) <= El * Math.max(...r);
 	}
 	fail(e) {
-		if (Al(e)) return;
+		if (jl(e)) return;
 		let t = de(e), n = `${t.message} The picture is drawn with ${this.loaded} of ${this.total} eigen textures.`, r = this.textures.hasMeans ? n : t.message;
 		this.dispatchEvent({
 			type: "error",
 			error: new j(t.code, r, t.where)
 		});
 	}
-}, Dl = new x(), Ol = new A();
-function kl(e, t) {
-	return Ol.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Dl.copy(t.matrixWorld).invert()), [
-		Ol.x,
-		Ol.y,
-		Ol.z
+}, Ol = new x(), kl = new A();
+function Al(e, t) {
+	return kl.setFromMatrixPosition(e.matrixWorld).applyMatrix4(Ol.copy(t.matrixWorld).invert()), [
+		kl.x,
+		kl.y,
+		kl.z
 	];
 }
-function Al(e) {
+function jl(e) {
 	return e instanceof DOMException && e.name === "AbortError";
 }
 // eigenfield-three/src/arrival.ts
-var jl = class {
+var Ml = class {
 	received = 0;
 	onPush = () => void 0;
 	chunks = [];
@@ -4886,7 +4892,7 @@ var jl = class {
 		return n.buffer;
 	}
 };
-async function Ml(e, t, n) {
+async function Nl(e, t, n) {
 	let r = e.getReader();
 	for (n.addEventListener("abort", () => void r.cancel().catch(() => void 0));;) {
 		let { done: e, value: n } = await r.read();
@@ -4896,7 +4902,7 @@ async function Ml(e, t, n) {
 	n.throwIfAborted(), t.end();
 }
 // eigenfield-three/src/ranges.ts
-var Nl = 2 ** 20, Pl = 2 ** 25, Fl = 3, Il = 500, Ll = class {
+var Pl = 2 ** 20, Fl = 2 ** 25, Il = 3, Ll = 500, Rl = class {
 	source;
 	arrival;
 	length;
@@ -4910,20 +4916,20 @@ var Nl = 2 ** 20, Pl = 2 ** 25, Fl = 3, Il = 500, Ll = class {
 	}
 	async read(e, t) {
 		let { arrival: n } = this;
-		if (t <= n.received || !this.begun || !this.parted && e <= n.received + Nl) {
+		if (t <= n.received || !this.begun || !this.parted && e <= n.received + Pl) {
 			let r = await n.read(e, t).catch((e) => {
-				if (this.signal.aborted || !(this.parted || this.begun && zl(e))) throw e;
+				if (this.signal.aborted || !(this.parted || this.begun && Bl(e))) throw e;
 			});
 			if (this.begun || this.limit(), r) return r;
 		}
-		if (this.giveUp(), this.source instanceof Blob) return this.slice(this.source, e, t);
+		if (this.giveUp(), typeof this.source != "string") return this.slice(this.source, e, t);
 		let r = this.source;
-		return Rl(this.signal, () => this.whole?.read(e, t) ?? this.fetch(r, e, t), () => this.whole === null);
+		return zl(this.signal, () => this.whole?.read(e, t) ?? this.fetch(r, e, t), () => this.whole === null);
 	}
 	limit() {
 		let { arrival: e } = this;
 		this.begun = !0, e.onPush = () => {
-			e.received >= Pl && e.received < this.length && this.giveUp();
+			e.received >= Fl && e.received < this.length && this.giveUp();
 		}, e.onPush();
 	}
 	giveUp() {
@@ -4950,26 +4956,26 @@ var Nl = 2 ** 20, Pl = 2 ** 25, Fl = 3, Il = 500, Ll = class {
 		return a;
 	}
 	receive(e) {
-		let t = this.whole = new jl();
-		return Ml(e, t, this.signal).catch((e) => t.fail(this.signal.aborted ? e : this.broken(t.received, e))), t;
+		let t = this.whole = new Ml();
+		return Nl(e, t, this.signal).catch((e) => t.fail(this.signal.aborted ? e : this.broken(t.received, e))), t;
 	}
 	broken(e, t) {
 		return new j("network", `The connection broke at byte ${e} of ${this.length} of the clip; it is tried again when it plays on.`, String(e), { cause: t });
 	}
 };
-async function Rl(e, t, n = () => !0) {
+async function zl(e, t, n = () => !0) {
 	for (let r = 1;; r++) try {
 		return await t();
 	} catch (t) {
-		if (e.throwIfAborted(), r === Fl || !zl(t) || !n()) throw t;
-		await new Promise((e) => setTimeout(e, Il * 2 ** (r - 1))), e.throwIfAborted();
+		if (e.throwIfAborted(), r === Il || !Bl(t) || !n()) throw t;
+		await new Promise((e) => setTimeout(e, Ll * 2 ** (r - 1))), e.throwIfAborted();
 	}
 }
-function zl(e) {
+function Bl(e) {
 	return e instanceof j && e.code === "network";
 }
 // eigenfield-three/src/beside.ts
-function Bl(e) {
+function Vl(e) {
 	return { read: async (t, n, r) => {
 		let i = e.get(t);
 		if (!i) throw new j("damaged", `The folder has no file ${t}; copy the clip's whole folder.`, t);
@@ -4977,7 +4983,7 @@ function Bl(e) {
 		return i.slice(0, r).arrayBuffer();
 	} };
 }
-var Vl = class {
+var Hl = class {
 	scene;
 	signal;
 	arriving = /* @__PURE__ */ new Map();
@@ -4985,7 +4991,7 @@ var Vl = class {
 		this.scene = e, this.signal = t;
 	}
 	read(e, t, n) {
-		return Rl(this.signal, async () => {
+		return zl(this.signal, async () => {
 			let r = this.arriving.get(e) ?? this.fetch(e, t);
 			try {
 				let i = await r.read(0, n);
@@ -4996,29 +5002,29 @@ var Vl = class {
 		});
 	}
 	fetch(e, t) {
-		let n = new jl();
+		let n = new Ml();
 		return this.arriving.set(e, n), this.receive(e, t, n).catch((t) => {
-			n.fail(this.signal.aborted || t instanceof j ? t : Hl(e, t));
+			n.fail(this.signal.aborted || t instanceof j ? t : Ul(e, t));
 		}), n;
 	}
 	async receive(e, t, n) {
 		let r = new URL(e, new URL(this.scene, document.baseURI)), { ok: i, status: a, headers: o, body: s } = await fetch(r, { signal: this.signal }), c = o.get("Content-Encoding") ? null : o.get("Content-Length"), l = i && c !== null && Number(c) !== t;
-		if (i && s && !l) return Ml(s, n, this.signal);
-		throw await s?.cancel(), l ? M(e, `${c} bytes of ${t}`) : Hl(e, `The server answered ${a}`);
+		if (i && s && !l) return Nl(s, n, this.signal);
+		throw await s?.cancel(), l ? M(e, `${c} bytes of ${t}`) : Ul(e, `The server answered ${a}`);
 	}
 };
-function Hl(e, t) {
+function Ul(e, t) {
 	return new j("network", `The clip's file ${e} cannot be fetched; put it beside the clip's own. It is tried again when it plays on.`, e, { cause: t });
 }
 // eigenfield-three/src/film-pictures.ts
-var Ul = {
+var Wl = {
 	mimeType: "video/AV1",
 	bits: 10
 };
-async function Wl(e, t, n) {
+async function Gl(e, t, n) {
 	let r = {
 		view: -1,
-		codec: Ul,
+		codec: Wl,
 		textures: 1,
 		pieces: 1,
 		where: n
@@ -5027,7 +5033,7 @@ async function Wl(e, t, n) {
 	let o = Ut(a, t);
 	return Gs(i), Wt(o, 4 * t[0], 4, t);
 }
-var Gl = class {
+var Kl = class {
 	size;
 	where;
 	user;
@@ -5048,7 +5054,7 @@ var Gl = class {
 	}
 	decode(e, t, n) {
 		if (!n) return;
-		let { turn: r } = this, i = Wl(e, this.size, this.where).then((e) => r === this.turn ? this.user.take(t, () => Promise.resolve(e)) : void 0).catch((e) => {
+		let { turn: r } = this, i = Gl(e, this.size, this.where).then((e) => r === this.turn ? this.user.take(t, () => Promise.resolve(e)) : void 0).catch((e) => {
 			r === this.turn && this.user.failed(e);
 		}).finally(() => {
 			this.decoding.delete(i), this.user.closed();
@@ -5064,11 +5070,11 @@ var Gl = class {
 	dispose() {
 		this.reset();
 	}
-}, Kl = 8, ql = 2, Jl = 2 / 3, Yl = /* @__PURE__ */ new Set([
+}, ql = 8, Jl = 2, Yl = 2 / 3, Xl = /* @__PURE__ */ new Set([
 	"damaged",
 	"truncated",
 	"network"
-]), Xl = class {
+]), Zl = class {
 	timeline;
 	groups;
 	user;
@@ -5100,7 +5106,7 @@ var Gl = class {
 		return this.decoders.reduce((e, t) => e + t.open, 0);
 	}
 	get reach() {
-		return Math.max(this.newestEnd, this.from) + Kl / 2;
+		return Math.max(this.newestEnd, this.from) + ql / 2;
 	}
 	get busy() {
 		return this.decoders.some(({ busy: e }) => e);
@@ -5196,7 +5202,7 @@ var Gl = class {
 		return e.every((e, t) => e !== null || !this.needs(t));
 	}
 	get hasRoom() {
-		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = this.keysAlone ? this.slots.size < ql ? Infinity : 0 : Math.max(this.from, this.wanted) + Kl;
+		let { frames: e } = this.timeline, t = this.loop ? Infinity : e * (Math.floor(this.wanted / e) + 1), n = this.keysAlone ? this.slots.size < Jl ? Infinity : 0 : Math.max(this.from, this.wanted) + ql;
 		return this.next < Math.min(n, t) && this.decoders.every(({ ready: e }, t) => e || !this.needs(t));
 	}
 	async feedAll() {
@@ -5212,7 +5218,7 @@ var Gl = class {
 			}
 			this.fed = r;
 			let i = this.given?.index === r ? this.given : await this.groups.open(r), a = n - i.first, o = i.units[a] ?? [];
-			a >= i.frames * Jl && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a);
+			a >= i.frames * Yl && this.prepare((r + 1) % this.timeline.groups.length), i.motion?.read(a);
 			let s = () => this.decoders.map((e, t) => [e, o[t]]).filter((e, t) => this.needs(t));
 			if (a === 0 && await Promise.all(s().map(([e, t]) => e.start(t))), e !== this.turn) return;
 			this.given = i, this.next = this.keysAlone ? t + i.frames : t + 1;
@@ -5246,7 +5252,7 @@ var Gl = class {
 	fail(e) {
 		let t = e instanceof j && e.code === "codec" ? e : null;
 		if (t && !this.keysAlone) return this.thin(t);
-		if (!(e instanceof j) || !Yl.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(t ? this.keysAlone : e, null);
+		if (!(e instanceof j) || !Xl.has(e.code)) return this.rest(), this.hopeless = !0, this.user.failed(t ? this.keysAlone : e, null);
 		let n = e.code === "damaged" && this.given?.index === this.fed && !this.tried.has(this.fed), r = this.startOf(Math.max(this.next - 1, 0));
 		this.halt();
 		for (let [e, t] of this.slots) this.isWhole(t.films) || this.forget(e, t);
@@ -5254,7 +5260,7 @@ var Gl = class {
 	}
 	thin(e) {
 		for (let e of this.decoders) e.dispose();
-		this.keysAlone = e, this.meansAlone = !1, this.decoders = this.timeline.films.map(({ size: e, where: t }, n) => new Gl(e, t, this.userOf(n))), this.stop(), this.next = this.startOf(this.from), this.user.thinned(), this.feed();
+		this.keysAlone = e, this.meansAlone = !1, this.decoders = this.timeline.films.map(({ size: e, where: t }, n) => new Kl(e, t, this.userOf(n))), this.stop(), this.next = this.startOf(this.from), this.user.thinned(), this.feed();
 	}
 	rest() {
 		this.stop(), this.next = Infinity;
@@ -5280,7 +5286,7 @@ var Gl = class {
 	reuseOne(e, { room: t }) {
 		t && this.rooms[e]?.push(t);
 	}
-}, Zl = .3, Ql = .2, $l = 2, eu = class {
+}, Ql = .3, $l = .2, eu = 2, tu = class {
 	place;
 	read;
 	changed;
@@ -5311,7 +5317,7 @@ var Gl = class {
 		let r = e - this.place.first;
 		if (r < 0 || r >= n.duration) return n.pause();
 		let i = r - n.currentTime;
-		Math.abs(i) > Zl * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max($l * i, -.2), Ql)), n.paused && !this.starting && this.start(n);
+		Math.abs(i) > Ql * Math.max(t, 1) ? n.seeking || (n.currentTime = r) : n.playbackRate = t * (1 + Math.min(Math.max(eu * i, -.2), $l)), n.paused && !this.starting && this.start(n);
 	}
 	rest() {
 		this.audio?.pause();
@@ -5336,62 +5342,62 @@ var Gl = class {
 	}
 };
 // eigenfield-three/src/clip.ts
-async function tu(e, t, n, r) {
+async function nu(e, t, n, r) {
 	let i = new dc(e, t, n, r), a = await i.begin();
 	a.motion?.read(0), fc(e, a);
-	let o = await Promise.all(t.films.map(({ size: e, where: t }, n) => Wl(a.units[0][n], e, t))), { sound: s } = t;
+	let o = await Promise.all(t.films.map(({ size: e, where: t }, n) => Gl(a.units[0][n], e, t))), { sound: s } = t;
 	return {
 		timeline: t,
 		group: a,
 		films: o,
 		mesh: n,
-		ring: (e) => new Xl(t, i, e),
-		sound: s && ((e) => new eu(s, () => r(s, s.length), e))
+		ring: (e) => new Zl(t, i, e),
+		sound: s && ((e) => new tu(s, () => r(s, s.length), e))
 	};
 }
 // eigenfield-three/src/means.ts
-async function nu(e, t) {
-	let { mean: n, meanSize: r } = e, i = e.precision && await ru(await t(e.precision.view), e.precision);
+async function ru(e, t) {
+	let { mean: n, meanSize: r } = e, i = e.precision && await iu(await t(e.precision.view), e.precision);
 	return {
 		pieces: await n.codec.decode(await t(n.view), n, r),
 		precision: i
 	};
 }
-async function ru(e, t) {
+async function iu(e, t) {
 	let { type: n } = Yr(e) ?? {}, { mimeType: r } = t.codec;
 	if (n && n !== r) throw M(t.where, `${n}, not ${r}`);
 	let [i] = await t.codec.bitmaps(e, t, t.size);
 	if (!i) throw M(t.where, "no picture");
 	return i.picture;
 }
-function iu({ pieces: e, precision: t }) {
+function au({ pieces: e, precision: t }) {
 	Gs(e), t?.close();
 }
 // eigenfield-three/src/packed.ts
-var au = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", ou = 4;
-async function su(e, t) {
-	let n = new G(e, ""), r = n.key("extensions").key(Se), i = r.key("packed");
+var ou = "\"names\":[\"texts\":[\"heldOut\":[1,2,\"lenses\":[null,\"harmonise\":\"gain\",\"affine\",\"align\":true,\"residual\":{\"quality\":40},\"metresPerUnit\":0.\"sharedPicture\",\"times\",\"codec\":\"codedNames\":{\"bufferView\":10,\"count\":20},\"sizes\":3,\"colour\":4,\"times\":[0,\"residual\":{\"size\":[512,512],\"scale\":[0.00,0.00],\"full\":true,\"smooth\":true,\"order\":3,\"holdOut\":\"odd\",\"every:\"scores\":{\"psnr\":{\"mean\":\"ssim\":{\"mean\":\"captured\":\"heldOut\":{\"needs\":[\"av1-10bit-2\",\"cameras-2\",\"codedNames\",\"codedTriangles\",\"codedWeights\",\"mesh-2\",\"namePattern\",\"precision\",\"regions\",\"stacks\",\"toRGB\"],\"mesh\":{\"bufferView\":5,\"codec\":\"mesh-2\"},\"planes\":[{\"channels\":1,\"mean\":{\"bufferView\":6,\"size\":[1024,768],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0009775171065493646],\"zero\":[0],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[{\"size\":[480,480],\"codedWeights\":8,\"textures\":[{\"bufferView\":11,\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":2,\"scale\":[0.0001],\"zero\":[341]}]},{\"size\":[64,464],\"grid\":[464,464],\"corner\":[0,0],\"codedWeights\":9,\"picture\":{\"mimeType\":\"video/AV1\",\"bits\":10,\"count\":8,\"scale\":[0.0002],\"zero\":[341]},\"textures\":[{\"bufferView\":12},{\"bufferView\":13}]}]},{\"channels\":2,\"mean\":{\"bufferView\":9,\"size\":[512,384],\"mimeType\":\"video/AV1\",\"bits\":10,\"scale\":[0.0004,0.0004],\"zero\":[341,341],\"precision\":{\"bufferView\":7,\"size\":[13,12]}},\"bases\":[]}],\"toRGB\":[1,-0.027444022,-0.9585462,1,-0.092323445,0.284937,1,0.9953508,0],\"cameras\":{\"pattern\":{\"counts\":[81,1],\"parts\":[\"image_\",{\"axis\":0,\"first\":0,\"step\":1,\"digits\":3},\".png\",\".jpg\",\".webp\"]},\"size\":[640,480],\"coded\":{\"bufferView\":4,\"codec\":\"cameras-2\"}},\"viewPlane\":{\"origin\":[0,0,0],\"right\":[1,0,0],\"up\":[0,-1,0],\"extent\":[0.5,0.5],\"codedTriangles\":10},\"reference\":40,\"settings\":{\"textures\":2,\"atlas\":[1024,768],\"density\":1.3,\"fit\":\"photographs\",\"fitted\":{\"quality\":78,\"psnr\":{\"luma\":{\"uncoded\":50.0,\"coded\":40.0},\"chroma\":{\"uncoded\":50.0,\"coded\":40.0}}},\"photographs\":{\"count\":81,\"bytes\":10000000,\"pixels\":10000000}},\"generator\":\"eigenfield 0.1.0\",\"lengths\":[", su = 4;
+async function cu(e, t) {
+	let n = new G(e, ""), r = n.key("extensions").key(xe), i = r.key("packed");
 	if (!i.exists) return e;
 	ja(r);
 	let a = Oi(n), o = a[i.integer(a.length - 1, a.length - 1)];
-	if (!o || o.length < ou) throw i.wrong("no length");
-	let s = new DataView(await t(o.offset, ou)).getUint32(0, !0);
-	if (ou + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
-	let { lengths: c, ...l } = new G(oc(await lu(await t(o.offset + ou, s), i.where), i.where), i.where).object(), u = cu(new G(c, `${i.where}/lengths`), o, ou + s), { packed: d, ...f } = r.object();
+	if (!o || o.length < su) throw i.wrong("no length");
+	let s = new DataView(await t(o.offset, su)).getUint32(0, !0);
+	if (su + s > o.length) throw i.wrong(`JSON of ${s} bytes`);
+	let { lengths: c, ...l } = new G(oc(await uu(await t(o.offset + su, s), i.where), i.where), i.where).object(), u = lu(new G(c, `${i.where}/lengths`), o, su + s), { packed: d, ...f } = r.object();
 	return {
 		...e,
-		bufferViews: [...n.key("bufferViews").items(F).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
+		bufferViews: [...n.key("bufferViews").items(I).slice(0, -1).map(({ raw: e }) => e ?? null), ...u],
 		extensions: {
 			...n.key("extensions").object(),
-			[Se]: {
+			[xe]: {
 				...f,
 				...l
 			}
 		}
 	};
 }
-function cu(e, t, n) {
-	let r = n, i = e.items(F).map((e) => {
+function lu(e, t, n) {
+	let r = n, i = e.items(I).map((e) => {
 		let n = e.integer(1, t.length);
 		return r += n, {
 			buffer: 0,
@@ -5402,8 +5408,8 @@ function cu(e, t, n) {
 	if (r !== t.length) throw e.wrong(`${r} bytes of ${t.length}`);
 	return i;
 }
-async function lu(e, t) {
-	let n = new TextEncoder().encode(au), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
+async function uu(e, t) {
+	let n = new TextEncoder().encode(ou), [r, i] = [n.length & 255, n.length >> 8], a = new Uint8Array(5 + n.length + e.byteLength);
 	a.set([
 		0,
 		r,
@@ -5411,7 +5417,7 @@ async function lu(e, t) {
 		~r,
 		~i
 	]), a.set(n, 5), a.set(new Uint8Array(e), 5 + n.length);
-	let o = await xe(a, "deflate-raw", n.length + Ce, t);
+	let o = await be(a, "deflate-raw", n.length + Se, t);
 	try {
 		return new TextDecoder("utf-8", {
 			fatal: !0,
@@ -5422,8 +5428,8 @@ async function lu(e, t) {
 	}
 }
 // eigenfield-three/src/still-textures.ts
-var uu = 3;
-function du(e) {
+var du = 3;
+function fu(e) {
 	return J(e).flatMap((e, t) => {
 		let n = 0;
 		return e.pictures.map((r) => {
@@ -5437,22 +5443,22 @@ function du(e) {
 		});
 	}).sort((e, t) => e.first - t.first || e.number - t.number);
 }
-function fu(e, t, n) {
-	let r = du(e), i = n, a = ({ basis: e, picture: n }) => {
+function pu(e, t, n) {
+	let r = fu(e), i = n, a = ({ basis: e, picture: n }) => {
 		let r = t(n.view).then((t) => n.codec.decode(t, n, e.size));
 		return r.catch(() => void 0), r;
 	};
 	return {
 		async fill(n) {
-			let { plan: o, signal: s } = n, c = i ?? await Promise.all(Aa(e).map((e) => nu(e, t)));
+			let { plan: o, signal: s } = n, c = i ?? await Promise.all(Aa(e).map((e) => ru(e, t)));
 			i = null, c.forEach((e, t) => {
-				n.putMean(t, e), iu(e);
+				n.putMean(t, e), au(e);
 			});
 			let l = r.filter(({ first: e }) => e < o.usable), u = [], d = 0;
 			try {
 				for (let { number: e, first: t, picture: r } of l) {
 					if (s.aborted) return;
-					for (let e of l.slice(d, d + uu - u.length)) u.push(a(e)), d += 1;
+					for (let e of l.slice(d, d + du - u.length)) u.push(a(e)), d += 1;
 					let i = await u[0] ?? [];
 					u.shift(), n.putTextures(e, t, i, r), Gs(i), n.announce();
 				}
@@ -5470,36 +5476,36 @@ function fu(e, t, n) {
 			return Promise.resolve(1);
 		},
 		dispose() {
-			i?.forEach(iu), i = null;
+			i?.forEach(au), i = null;
 		}
 	};
 }
 // eigenfield-three/src/grid.ts
-function pu(e) {
+function mu(e) {
 	let t = e.length / 2;
 	for (let n = 1; n * n <= t; n++) {
 		if (t % n) continue;
-		let r = t / n, i = mu(e, n, r) ?? (n === r ? null : mu(e, r, n));
+		let r = t / n, i = hu(e, n, r) ?? (n === r ? null : hu(e, r, n));
 		if (i) return i;
 	}
 	return null;
 }
-function mu(e, t, n) {
-	let [r, i] = [gu(e, 0), gu(e, 1)];
-	if (t === 1 && _u(i) > 0 || n === 1 && _u(r) > 0) return null;
-	let a = Array.from(r, (e, t) => t).sort((e, t) => vu(i, e) - vu(i, t));
+function hu(e, t, n) {
+	let [r, i] = [_u(e, 0), _u(e, 1)];
+	if (t === 1 && vu(i) > 0 || n === 1 && vu(r) > 0) return null;
+	let a = Array.from(r, (e, t) => t).sort((e, t) => yu(i, e) - yu(i, t));
 	for (let e = 0; e < t; e++) {
-		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => vu(r, e) - vu(r, t));
+		let t = a.slice(e * n, (e + 1) * n).sort((e, t) => yu(r, e) - yu(r, t));
 		a.splice(e * n, n, ...t);
 	}
 	let o = (e, t) => a[e * n + t] ?? 0;
-	return hu(n, t, (e, t) => vu(r, o(t, e))) && hu(t, n, (e, t) => vu(i, o(e, t))) ? {
+	return gu(n, t, (e, t) => yu(r, o(t, e))) && gu(t, n, (e, t) => yu(i, o(e, t))) ? {
 		rows: t,
 		columns: n,
 		index: Int32Array.from(a)
 	} : null;
 }
-function hu(e, t, n) {
+function gu(e, t, n) {
 	let r = Infinity, i = 0, a = NaN;
 	for (let o = 0; o < e; o++) {
 		let e = 0;
@@ -5509,33 +5515,33 @@ function hu(e, t, n) {
 	}
 	return r > 0 && (r === Infinity || i <= r / 4);
 }
-function gu(e, t) {
+function _u(e, t) {
 	return Float64Array.from({ length: e.length / 2 }, (n, r) => e[2 * r + t] ?? 0);
 }
-function _u(e) {
+function vu(e) {
 	return e.reduce((e, t) => Math.max(e, t), -Infinity) - e.reduce((e, t) => Math.min(e, t), Infinity);
 }
-var vu = (e, t) => e[t] ?? 0, yu = 1e-6, bu = 32, xu = class {
+var yu = (e, t) => e[t] ?? 0, bu = 1e-6, xu = 32, Su = class {
 	places;
 	triangles;
 	isLine;
 	grid;
 	rules = /* @__PURE__ */ new Map();
 	constructor(e, t, n) {
-		this.places = e, this.triangles = t, this.isLine = n, this.grid = pu(e);
+		this.places = e, this.triangles = t, this.isLine = n, this.grid = mu(e);
 	}
 	at(e, t, n) {
 		let r = n === "bilinear" && !this.grid ? "delaunay" : n, i = this.rules.get(r);
-		return i || this.rules.set(r, i = this.makeRule(r)), i(Su(e), this.isLine ? 0 : Su(t));
+		return i || this.rules.set(r, i = this.makeRule(r)), i(Cu(e), this.isLine ? 0 : Cu(t));
 	}
 	makeRule(e) {
-		return e === "nearest3" ? (e, t) => Mu(e, t, this.places) : e === "bilinear" && this.grid ? Pu(this.places, this.grid) : Tu(this.places, this.triangles);
+		return e === "nearest3" ? (e, t) => Nu(e, t, this.places) : e === "bilinear" && this.grid ? Fu(this.places, this.grid) : Eu(this.places, this.triangles);
 	}
 };
-function Su(e) {
+function Cu(e) {
 	return Math.min(1, Math.max(-1, e));
 }
-function Cu(e) {
+function wu(e) {
 	let t = {
 		camera: [
 			0,
@@ -5555,7 +5561,7 @@ function Cu(e) {
 	}), t;
 }
 var Z = (e, t) => e[2 * t] ?? 0, Q = (e, t) => e[2 * t + 1] ?? 0;
-function wu(e, t, n, r, i, a) {
+function Tu(e, t, n, r, i, a) {
 	let [o, s] = [Z(n, r), Q(n, r)], [c, l] = [Z(n, i) - o, Q(n, i) - s], [u, d] = [Z(n, a) - o, Q(n, a) - s], f = c * d - l * u, p = ((e - o) * d - (t - s) * u) / f, m = (c * (t - s) - l * (e - o)) / f;
 	return [
 		1 - p - m,
@@ -5563,49 +5569,49 @@ function wu(e, t, n, r, i, a) {
 		m
 	];
 }
-function Tu(e, t) {
+function Eu(e, t) {
 	if (!t.length) {
-		let t = ju(e, Au(e));
-		return (n, r) => ku(n, r, e, t);
+		let t = Mu(e, ju(e));
+		return (n, r) => Au(n, r, e, t);
 	}
-	let n = Du(e, t, 3), r = Ou(t);
+	let n = Ou(e, t, 3), r = ku(t);
 	return (i, a) => {
 		let o = -1, s = -Infinity, c = [
 			0,
 			0,
 			0
 		];
-		for (let r of n[$(a) * bu + $(i)] ?? []) {
+		for (let r of n[$(a) * xu + $(i)] ?? []) {
 			let [n, l, u] = [
-				Eu(t, r, 0),
-				Eu(t, r, 1),
-				Eu(t, r, 2)
-			], d = wu(i, a, e, n, l, u), f = Math.min(...d);
+				Du(t, r, 0),
+				Du(t, r, 1),
+				Du(t, r, 2)
+			], d = Tu(i, a, e, n, l, u), f = Math.min(...d);
 			f > s && ([o, s, c] = [
 				r,
 				f,
 				d
 			]);
 		}
-		return s < -1e-9 ? ku(i, a, e, r) : Cu(c.map((e, n) => [Eu(t, o, n), e]));
+		return s < -1e-9 ? Au(i, a, e, r) : wu(c.map((e, n) => [Du(t, o, n), e]));
 	};
 }
-var Eu = (e, t, n) => e[3 * t + n] ?? 0;
+var Du = (e, t, n) => e[3 * t + n] ?? 0;
 function $(e) {
-	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * bu)));
+	return Math.min(31, Math.max(0, Math.floor((e + 1) / 2 * xu)));
 }
-function Du(e, t, n) {
+function Ou(e, t, n) {
 	let r = Array.from({ length: 1024 }, () => []);
 	for (let i = 0; i < t.length / n; i++) {
 		let a = Array.from({ length: n }, (e, r) => t[n * i + r] ?? 0), o = a.map((t) => Z(e, t)), s = a.map((t) => Q(e, t));
-		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * bu + t]?.push(i);
+		for (let e = $(Math.min(...s)); e <= $(Math.max(...s)); e++) for (let t = $(Math.min(...o)); t <= $(Math.max(...o)); t++) r[e * xu + t]?.push(i);
 	}
 	return r;
 }
-function Ou(e) {
+function ku(e) {
 	let t = /* @__PURE__ */ new Map();
 	for (let n = 0; n < e.length / 3; n++) for (let r = 0; r < 3; r++) {
-		let [i, a] = [Eu(e, n, r), Eu(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
+		let [i, a] = [Du(e, n, r), Du(e, n, (r + 1) % 3)], o = i < a ? [i, a] : [a, i], s = t.get(o.join());
 		s ? s.times += 1 : t.set(o.join(), {
 			edge: o,
 			times: 1
@@ -5614,7 +5620,7 @@ function Ou(e) {
 	let n = [...t.values()].filter((e) => e.times === 1).map((e) => e.edge);
 	return n.sort((e, t) => e[0] - t[0] || e[1] - t[1]), Int32Array.from(n.flat());
 }
-function ku(e, t, n, r) {
+function Au(e, t, n, r) {
 	let i = Infinity, a = [
 		r[0] ?? 0,
 		r[0] ?? 0,
@@ -5629,12 +5635,12 @@ function ku(e, t, n, r) {
 		]]);
 	}
 	let [o, s, c] = a;
-	return Cu([[o, 1 - c], [s, c]]);
+	return wu([[o, 1 - c], [s, c]]);
 }
-function Au(e) {
+function ju(e) {
 	return Array.from({ length: e.length / 2 }, (e, t) => t);
 }
-function ju(e, t) {
+function Mu(e, t) {
 	let [n = 0] = t;
 	if (t.length === 1) return Int32Array.of(n, n);
 	let r = [0, 0];
@@ -5655,7 +5661,7 @@ function ju(e, t) {
 	let s = .5 * Math.atan2(2 * a, i - o), c = (t) => Z(e, t) * Math.cos(s) + Q(e, t) * Math.sin(s), l = [...t].sort((e, t) => c(e) - c(t));
 	return Int32Array.from(l.slice(1).flatMap((e, t) => [l[t] ?? 0, e]));
 }
-function Mu(e, t, n) {
+function Nu(e, t, n) {
 	let [r, i, a] = [
 		-1,
 		-1,
@@ -5669,12 +5675,12 @@ function Mu(e, t, n) {
 		let [u, d] = [Z(n, l) - e, Q(n, l) - t], f = u * u + d * d;
 		f >= c || (a = l, c = f, f < s && ([a, c] = [i, s], [i, s] = [l, f]), f < o && ([i, s] = [r, o], [r, o] = [l, f]));
 	}
-	if (a < 0 || Nu(n, r, i, a) <= yu) return ku(e, t, n, ju(n, [
+	if (a < 0 || Pu(n, r, i, a) <= bu) return Au(e, t, n, Mu(n, [
 		r,
 		i,
 		a
 	].filter((e) => e >= 0)));
-	let [l, u, d] = wu(e, t, n, r, i, a);
+	let [l, u, d] = Tu(e, t, n, r, i, a);
 	return {
 		camera: [
 			r,
@@ -5690,15 +5696,15 @@ function Mu(e, t, n) {
 		]
 	};
 }
-function Nu(e, t, n, r) {
+function Pu(e, t, n, r) {
 	let [i, a] = [Z(e, n) - Z(e, t), Q(e, n) - Q(e, t)], [o, s] = [Z(e, r) - Z(e, t), Q(e, r) - Q(e, t)], c = Math.max(i * i + a * a, o * o + s * s, (i - o) ** 2 + (a - s) ** 2);
 	return c > 0 ? Math.abs(i * s - a * o) / c : 0;
 }
-function Pu(e, t) {
+function Fu(e, t) {
 	let { rows: n, columns: r, index: i } = t;
 	if (Math.min(n, r) === 1) {
-		let t = ju(e, Au(e));
-		return (n, r) => ku(n, r, e, t);
+		let t = Mu(e, ju(e));
+		return (n, r) => Au(n, r, e, t);
 	}
 	let a = (e, t) => i[e * r + t] ?? 0, o = [];
 	for (let e = 0; e + 1 < n; e++) for (let t = 0; t + 1 < r; t++) o.push([
@@ -5707,7 +5713,7 @@ function Pu(e, t) {
 		a(e + 1, t + 1),
 		a(e + 1, t)
 	]);
-	let s = Du(e, o.flat(), 4), c = [];
+	let s = Ou(e, o.flat(), 4), c = [];
 	for (let e = 0; e < r; e++) c.push(a(0, e));
 	for (let e = 1; e < n; e++) c.push(a(e, r - 1));
 	for (let e = r - 2; e >= 0; e--) c.push(a(n - 1, e));
@@ -5715,12 +5721,12 @@ function Pu(e, t) {
 	let l = Int32Array.from(c.slice(1).flatMap((e, t) => [c[t] ?? 0, e]));
 	return (t, n) => {
 		let r = null, i = -Infinity;
-		for (let a of s[$(n) * bu + $(t)] ?? []) {
-			let s = o[a], c = s ? Fu(t, n, e, s) : -Infinity;
+		for (let a of s[$(n) * xu + $(t)] ?? []) {
+			let s = o[a], c = s ? Iu(t, n, e, s) : -Infinity;
 			s && c > i && ([r, i] = [s, c]);
 		}
-		if (!r || i < -1e-9) return ku(t, n, e, l);
-		let [a, c] = Iu(t, n, e, r);
+		if (!r || i < -1e-9) return Au(t, n, e, l);
+		let [a, c] = Lu(t, n, e, r);
 		return {
 			camera: r,
 			weight: [
@@ -5732,7 +5738,7 @@ function Pu(e, t) {
 		};
 	};
 }
-function Fu(e, t, n, r) {
+function Iu(e, t, n, r) {
 	let i = Infinity;
 	for (let a = 0; a < 4; a++) {
 		let [o, s] = [r[a], r[(a + 1) % 4]], [c, l] = [Z(n, o), Q(n, o)];
@@ -5740,7 +5746,7 @@ function Fu(e, t, n, r) {
 	}
 	return i;
 }
-function Iu(e, t, n, r) {
+function Lu(e, t, n, r) {
 	let [i, a, o, s] = [
 		Z(n, r[0]),
 		Q(n, r[0]),
@@ -5758,17 +5764,17 @@ function Iu(e, t, n, r) {
 		s - a,
 		u - i,
 		d - a
-	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Lu(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
-	return [Lu(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
+	], [v, y] = [i - o + c - u, a - s + l - d], b = f * h - p * m, x = f * y - p * v - (g * h - _ * m), S = -(g * y - _ * v), C = Math.sqrt(Math.max(x * x - 4 * b * S, 0)), w = Ru(-2 * b / (x + (x < 0 ? -C : C))), [T, E] = [m + w * v, h + w * y];
+	return [Ru(((f - w * g) * T + (p - w * _) * E) / (T * T + E * E)), w];
 }
-function Lu(e) {
+function Ru(e) {
 	return Math.min(1, Math.max(0, e));
 }
 // eigenfield-three/src/plugin.ts
-var Ru = class {
+var zu = class {
 	parser;
 	options;
-	name = Se;
+	name = xe;
 	scene = null;
 	views = [];
 	lacks = null;
@@ -5778,11 +5784,11 @@ var Ru = class {
 	}
 	async beforeRoot() {
 		if (!this.ours) return;
-		this.options.renderer && rl(this.options.renderer);
+		this.options.renderer && il(this.options.renderer);
 		let { json: e } = this.parser;
-		me(e), Object.assign(e, await su(e, (e, t) => this.read(e, t)));
+		me(e), Object.assign(e, await cu(e, (e, t) => this.read(e, t)));
 		let t = Oa(e), { stream: n } = this.options, r = t.timeline?.groups[0]?.file ? n?.readFile : n?.readGroups;
-		(!t.timeline || r) && (this.views = t.views, t.timeline && t.shown && !await ai("image/avif") ? this.lacks = new j("codec", "This browser decodes no AV1; use a newer browser. The first frame is shown.", "") : (this.scene = t, this.scene.shown || zu(e)));
+		(!t.timeline || r) && (this.views = t.views, t.timeline && t.shown && !await ai("image/avif") ? this.lacks = new j("codec", "This browser decodes no AV1; use a newer browser. The first frame is shown.", "") : (this.scene = t, this.scene.shown || Bu(e)));
 	}
 	async read(e, t) {
 		if (this.options.stream) return this.options.stream.read(e, t);
@@ -5803,39 +5809,39 @@ var Ru = class {
 	async afterRoot(e) {
 		let { scene: t } = this;
 		if (this.lacks && (e.userData.eigenfieldError = this.lacks), !t) return;
-		let n = Bu(e, this.parser), [r] = n;
+		let n = Vu(e, this.parser), [r] = n;
 		if (!r) throw M("/meshes/0", "no node shows it");
-		t.shown && Vc(r.geometry, t.shown);
+		t.shown && Hc(r.geometry, t.shown);
 		let i = async (e) => {
 			let n = await this.parser.getDependency("bufferView", e);
 			if (n.byteLength < (t.views[e]?.length ?? 0)) throw ue(`/bufferViews/${e}`);
 			return n;
-		}, a = t.mesh && await Hc(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
+		}, a = t.mesh && await Uc(t.mesh, i), o = t.timeline && a && await this.openClip(t, t.timeline, a);
 		if (a) {
-			let e = Uc(a);
+			let e = Wc(a);
 			r.geometry.dispose();
 			for (let t of n) t.geometry = e;
 		}
 		t.sheets && sa(t.sheets, r.geometry);
 		let [s, c, l, u] = await Promise.all([
-			Promise.all(o ? [] : Aa(t).map((e) => nu(e, i))),
+			Promise.all(o ? [] : Aa(t).map((e) => ru(e, i))),
 			Ga(t, i),
 			o ? o.group.omega : $a(t, i),
 			ao(t, i)
-		]), d = c.filter((e, n) => !t.heldOut[n]), f = new xu(Float64Array.from(d.flatMap((e) => lo(t, e.centre))), u, t.extent[1] === 0), p = o ? Aa(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
+		]), d = c.filter((e, n) => !t.heldOut[n]), f = new Su(Float64Array.from(d.flatMap((e) => lo(t, e.centre))), u, t.extent[1] === 0), p = o ? Aa(t).map(({ meanSize: e }) => e ?? [1, 1]) : s.map(({ pieces: [e] }) => [e?.picture.width ?? 1, e?.rows ?? 1]), m = {
 			scene: t,
-			info: so(t, c, p, f.grid, this.fileBytes(), Wc(r.geometry)),
+			info: so(t, c, p, f.grid, this.fileBytes(), Gc(r.geometry)),
 			meshes: n,
 			meanSizes: p,
 			omega: l,
 			weights: f,
 			clip: o
-		}, h = o ? new Xs(t, o.films) : fu(t, i, s);
-		e.userData.eigenfield = new El(m, h, this.options);
+		}, h = o ? new Xs(t, o.films) : pu(t, i, s);
+		e.userData.eigenfield = new Dl(m, h, this.options);
 	}
 	openClip(e, t, n) {
 		let r = this.options.stream;
-		return tu(e, t, n, ({ offset: e, length: t, file: n }, i) => n === null ? r.readGroups(e, i) : r.readFile(n, t, i));
+		return nu(e, t, n, ({ offset: e, length: t, file: n }, i) => n === null ? r.readGroups(e, i) : r.readFile(n, t, i));
 	}
 	fileBytes() {
 		let { groups: e = [], sound: t = null } = this.scene?.timeline ?? {}, n = [...e, ...t ? [t] : []].reduce((e, t) => e + (t.file ? t.length : 0), 0);
@@ -5844,52 +5850,59 @@ var Ru = class {
 		return r.KHR_binary_glTF?.header?.length ?? i.buffers[0]?.byteLength ?? 0;
 	}
 };
-function zu(e) {
+function Bu(e) {
 	let [t] = e.nodes;
 	t && (t.mesh = 0), e.meshes = [{ primitives: [{
 		attributes: {},
 		material: 0
 	}] }], e.materials = [{ doubleSided: !0 }];
 }
-function Bu(e, t) {
+function Vu(e, t) {
 	let n = [];
 	return e.scene.traverse((e) => {
 		let r = t.associations.get(e);
-		Vu(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
+		Hu(e) && r?.meshes === 0 && (r.primitives ?? 0) === 0 && n.push(e);
 	}), n;
 }
-function Vu(e) {
+function Hu(e) {
 	return e.isMesh === !0;
 }
 // eigenfield-three/src/load.ts
-async function Hu(e, t = {}) {
-	let { signal: n } = t;
+async function Uu(e, t = {}) {
+	let { signal: n } = t, r = Wu(e);
 	n?.throwIfAborted();
-	let r = new jl(), [i, a] = [new AbortController(), new AbortController()], o = () => {
-		r.fail(new DOMException("The load was stopped.", "AbortError")), i.abort();
+	let i = new Ml(), [a, o] = [new AbortController(), new AbortController()], s = () => {
+		i.fail(new DOMException("The load was stopped.", "AbortError")), a.abort();
 	};
-	n?.addEventListener("abort", o), i.signal.addEventListener("abort", () => a.abort());
-	let s = Ku(e, r, a.signal, t.onBytes).catch((e) => r.fail(e)).finally(() => n?.removeEventListener("abort", o));
+	n?.addEventListener("abort", s), a.signal.addEventListener("abort", () => o.abort());
+	let c = Ju(r, i, o.signal, t.onBytes).catch((e) => i.fail(e)).finally(() => n?.removeEventListener("abort", s));
 	try {
-		let o = await rc(r);
-		if (!Da(o.json)) return {
-			gltf: await Gu(r, o, s),
+		let e = await rc(i);
+		if (!Da(e.json)) return {
+			gltf: await qu(i, e, c),
 			field: null,
 			error: null
 		};
-		let c = e instanceof ArrayBuffer ? r : ((e) => new Ll(e, r, o.length, () => a.abort(), i.signal))(e), l = t.files ? Bl(t.files) : null, u = await Uu(r, o, c, typeof e == "string" ? new Vl(e, i.signal) : l, t);
-		n?.throwIfAborted();
-		let { eigenfield: d, eigenfieldError: f } = u.userData;
-		return {
+		let s = r instanceof Uint8Array ? i : ((t) => new Rl(t, i, e.length, () => o.abort(), a.signal))(r), l = t.files ? Vl(t.files) : null, u = await Gu(i, e, s, typeof r == "string" ? new Hl(r, a.signal) : l, t), { eigenfield: d, eigenfieldError: f } = u.userData, p = d instanceof Dl ? d : null;
+		return n?.aborted && p?.dispose(), n?.throwIfAborted(), {
 			gltf: u,
-			field: d instanceof El ? d : null,
+			field: p,
 			error: f instanceof j ? f : null
 		};
 	} catch (e) {
-		throw i.abort(), n?.throwIfAborted(), de(e);
+		throw a.abort(), n?.throwIfAborted(), de(e);
 	}
 }
-async function Uu(e, t, n, r, i) {
+function Wu(e) {
+	if (typeof e == "string") return e;
+	if (ArrayBuffer.isView(e)) return new Uint8Array(e.buffer, e.byteOffset, e.byteLength);
+	let t = Object.prototype.toString.call(e).slice(8, -1);
+	if (t === "URL") return String(e);
+	if (t === "Blob" || t === "File") return e;
+	if (t === "ArrayBuffer") return new Uint8Array(e);
+	throw TypeError("A scene is loaded from an address, a Blob or an ArrayBuffer.");
+}
+async function Gu(e, t, n, r, i) {
 	let a = new ce(), o = (e, t = n) => async (n, r) => {
 		let i = await e + n;
 		return t.read(i, i + r);
@@ -5899,17 +5912,17 @@ async function Uu(e, t, n, r, i) {
 		total: t.length,
 		read: o(s, e),
 		readGroups: (...e) => o(t.groups())(...e),
-		readFile: (...e) => r?.read(...e) ?? Promise.reject(Wu(e[0]))
+		readFile: (...e) => r?.read(...e) ?? Promise.reject(Ku(e[0]))
 	};
-	return a.register((e) => new Ru(e, {
+	return a.register((e) => new zu(e, {
 		...i,
 		stream: c
 	})), a.parseAsync(t.text, "");
 }
-function Wu(e) {
+function Ku(e) {
 	return new j("unsupported", `The clip is a folder, and its file ${e} cannot be found from here; make one file of it, with \`eigenfield export\`.`, e);
 }
-async function Gu(e, t, n) {
+async function qu(e, t, n) {
 	await n;
 	let r = await e.read(0, t.length);
 	try {
@@ -5921,25 +5934,25 @@ async function Gu(e, t, n) {
 		throw new j("unsupported", `${t} It has no eigen textures either.`, "", { cause: e });
 	}
 }
-async function Ku(e, t, n, r) {
-	if (e instanceof ArrayBuffer) return t.push(new Uint8Array(e)), r?.(e.byteLength, e.byteLength), t.end();
-	let { body: i, total: a } = e instanceof Blob ? qu(e) : await Ju(e, n), o = i.getReader();
+async function Ju(e, t, n, r) {
+	if (e instanceof Uint8Array) return t.push(e), r?.(e.length, e.length), t.end();
+	let { body: i, total: a } = typeof e == "string" ? await Xu(e, n) : Yu(e), o = i.getReader();
 	for (n.addEventListener("abort", () => void o.cancel().catch(() => void 0));;) {
 		let { done: e, value: i } = await o.read().catch((e) => {
-			throw n.aborted ? e : Yu(t.received, e);
+			throw n.aborted ? e : Zu(t.received, e);
 		});
 		if (e) break;
 		t.push(i), r?.(t.received, a);
 	}
 	n.throwIfAborted(), t.end();
 }
-function qu(e) {
+function Yu(e) {
 	return {
 		body: e.stream(),
 		total: e.size
 	};
 }
-async function Ju(e, t) {
+async function Xu(e, t) {
 	let n = await fetch(e, { signal: t }).catch((n) => {
 		throw t.aborted ? n : new j("network", "The scene cannot be fetched; check its address and the connection.", e, { cause: n });
 	});
@@ -5950,7 +5963,7 @@ async function Ju(e, t) {
 		total: r && /^\d+$/.test(r) ? Number(r) : void 0
 	};
 }
-function Yu(e, t) {
+function Zu(e, t) {
 	return new j("network", `The connection broke after ${e} bytes of the scene; load it again.`, String(e), { cause: t });
 }
-export { El as EigenField, Ru as EigenfieldPlugin, zc as Player, Yc as SHEETS, j as SceneError, Mo as defaultMemory, Hu as loadEigenfield, po as novelCamera, _o as placeCamera, pe as refuseAddresses };
+export { Dl as EigenField, zu as EigenfieldPlugin, zc as Player, Xc as SHEETS, j as SceneError, Mo as defaultMemory, Uu as loadEigenfield, po as novelCamera, _o as placeCamera, pe as refuseAddresses };
