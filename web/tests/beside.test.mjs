@@ -45,13 +45,15 @@ function apart(a, b, from, to) {
   return sum / count;
 }
 
-/** What a scene alone shows at a place, as the page draws it. */
-async function alone(name, act) {
+/** A page of a scene alone: `seen` is what it draws at a place. */
+async function alone(name) {
   const { page, close } = await openViewer(browser, name, { ...SIZE, query: "?ui=0" });
-  await act(page);
-  const seen = await picture(page);
-  await close();
-  return seen;
+  const seen = async (go) => {
+    await go(page);
+    await settled(page);
+    return picture(page);
+  };
+  return { seen, close };
 }
 
 test("left of the line the first, right of it the second, seen from one place: on the plane, off it, and by a camera", async () => {
@@ -60,21 +62,23 @@ test("left of the line the first, right of it the second, seen from one place: o
     (page) => page.evaluate(() => (location.hash = "#eye=0.3,0.4,3.6&at=0,0,0&mode=orbit")),
     (page) => page.evaluate(() => window.eigenfield.goToCamera("view_1_3")),
   ];
+  const { page, close } = await open("scene.glb", "one.glb", { query: "?ui=0" });
+  const [left, right] = [await alone("scene.glb"), await alone("one.glb")];
   for (const go of places) {
-    const { page, close } = await open("scene.glb", "one.glb", { query: "?ui=0" });
-    await go(page);
     await set(page, { divider: 0.4 });
+    await go(page);
+    await settled(page);
     const { frame } = await state(page);
     const both = await picture(page);
-    const [first, second] = [await alone("scene.glb", go), await alone("one.glb", go)];
+    const [first, second] = [await left.seen(go), await right.seen(go)];
     const at = frame.left + 0.4 * frame.width;
     assert.equal(apart(both, first, 0, at - 0.01), 0);
     assert.ok(apart(both, second, at + 0.01, 1) < 0.01, `${apart(both, second, at + 0.01, 1)}`);
     assert.ok(apart(first, second, 0, 1) > 1, "they differ");
     await set(page, { divider: null });
     assert.equal(apart(await picture(page), first, 0, 1), 0);
-    await close();
   }
+  for (const one of [{ close }, left, right]) await one.close();
 });
 
 test("names, bytes and scores stand above; the line is dragged, by a finger too, moved by keys, and goes by B", async () => {
