@@ -48,11 +48,11 @@ test("page and viewer are light, and the poster is there at once", async (contex
   const times = [], bare = [];
   for (let i = 0; i < 3; i++) {
     for (const [path, found] of [["page.html", times], ["bare.html", bare]]) {
-      const { page, close } = await open(path);
-      found.push(await page.evaluate(() => new Promise((done) => {
-        const look = (list) => list.getEntries().forEach(({ element, startTime }) => element?.matches(".poster") && done(startTime));
+      const { page, close } = await open(path, { init: () => { // later, the poster may have been taken away
+        const look = (list) => list.getEntries().forEach(({ element, startTime }) => element?.matches(".poster") && (window.posterAt ??= startTime));
         new PerformanceObserver(look).observe({ type: "largest-contentful-paint", buffered: true });
-      })));
+      } });
+      found.push(await (await page.waitForFunction(() => window.posterAt)).jsonValue());
       await close();
     }
   }
