@@ -107,7 +107,7 @@ test("the first frame is there before anything plays", async () => {
   await close();
 });
 
-for (const speed of [0.25, 0.5, 1, 2, 4]) {
+for (const speed of [0.5, 1, 4]) {
   test(`every frame that is played at speed ${speed} shows its number three ways, across groups and from the end on`, async () => {
     const { page, close } = await openClip();
     if (speed < 0.5) await page.evaluate((frame) => window.field.player.toFrame(frame), STARTS[3] - 2);
