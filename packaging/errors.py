@@ -132,15 +132,25 @@ def is_code(node: ast.expr) -> bool:
 
 def names(function: ast.AST, tree: ast.Module, line: int) -> dict[str, ast.expr]:
     """What names stand for at a line of a function: what was assigned to them last."""
-    found = [
-        (target.id, node.value)
-        for scope in (tree.body, sorted(ast.walk(function), key=lambda node: getattr(node, "lineno", 0)))
-        for node in scope
-        if isinstance(node, ast.Assign) and (scope is tree.body or node.lineno <= line)
-        for target in node.targets
-        if isinstance(target, ast.Name)
-    ]
-    return dict(found)
+    found: dict[str, ast.expr] = {}
+    for scope in (tree.body, sorted(ast.walk(function), key=lambda node: getattr(node, "lineno", 0))):
+        for node in scope:
+            if isinstance(node, ast.Assign) and (scope is tree.body or node.lineno <= line):
+                for target in node.targets:
+                    found |= assigned(target, node.value)
+    return found
+
+
+def assigned(target: ast.expr, value: ast.expr) -> dict[str, ast.expr]:
+    """What an assignment gives to each name, also of several at once."""
+    match target, value:
+        case ast.Name(id=name), _:
+            return {name: value}
+        case ast.Tuple(elts=names), ast.Tuple(elts=values) if len(names) == len(values):
+            return {key: one for pair in zip(names, values, strict=True) for key, one in assigned(*pair).items()}
+        case ast.Tuple(elts=names), _:  # of which nothing is known
+            return {name.id: value for name in names if isinstance(name, ast.Name)}
+    return {}
 
 
 def said(node: ast.expr, known: dict[str, ast.expr]) -> str:

@@ -22,8 +22,6 @@ from eigenfield.core.scene import Scene
 
 log = logging.getLogger(__name__)
 
-OTHER_CALIBRATION = "%s: the capture's calibration is not the one that was encoded; the scene's own cameras are used"
-
 SCENE_LENS_MODELS = ("brown", "fisheye", "rational", "metashape", "metashape-equidistant", "metashape-equisolid")
 SCENE_MAX_CALIBRATION_PIXELS = 0.5  # two calibrations may differ by this much without a warning
 SCENE_MAX_DISTANCE_RATIO = 0.1  # of the mean distance of two cameras, by which that of any two may differ
@@ -95,17 +93,24 @@ def match_photographs(scene: Scene, capture: LightField) -> dict[int, int]:
     photographs = _same_names(scene, capture.names)
     if not photographs:
         raise _no_photographs(scene, capture.root, capture.names)
-    for index, view in photographs.items():
-        K, other = scene.rig.cameras[index].K, capture.views[view].camera.K
-        if np.abs(K - other).max() > SCENE_MAX_CALIBRATION_PIXELS:
-            log.warning(OTHER_CALIBRATION, scene.rig.names[index])
-            return photographs
-    ours = [scene.rig.cameras[index].centre for index in photographs]
-    theirs = [capture.views[view].camera.centre for view in photographs.values()]
-    off = np.abs(_relative_distances(np.array(ours)) - _relative_distances(np.array(theirs)))
-    if off.max() > SCENE_MAX_DISTANCE_RATIO:
-        log.warning(OTHER_CALIBRATION, scene.rig.names[[*photographs][int(off.sum(axis=1).argmax())]])
+    other = _other_calibration(scene, capture, photographs)
+    if other is not None:
+        log.warning(
+            "%s: the capture's calibration is not the one that was encoded; the scene's own cameras are used",
+            scene.rig.names[other],
+        )
     return photographs
+
+
+def _other_calibration(scene: Scene, capture: LightField, photographs: dict[int, int]) -> int | None:
+    """A camera of the scene that has another lens, or another place among the others, in the capture."""
+    pairs = [(scene.rig.cameras[index], capture.views[view].camera) for index, view in photographs.items()]
+    lenses = [np.abs(ours.K - theirs.K).max() > SCENE_MAX_CALIBRATION_PIXELS for ours, theirs in pairs]
+    ours, theirs = (_relative_distances(np.array([one.centre for one in side])) for side in zip(*pairs, strict=True))
+    off = np.abs(ours - theirs)
+    if any(lenses):
+        return [*photographs][int(np.argmax(lenses))]
+    return [*photographs][int(off.sum(axis=1).argmax())] if off.max() > SCENE_MAX_DISTANCE_RATIO else None
 
 
 def _relative_distances(centres: NDArray[np.float64]) -> NDArray[np.float64]:
