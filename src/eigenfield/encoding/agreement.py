@@ -64,9 +64,8 @@ def warn_of_disagreement(
     shared = 1 - float(squares.sum()) / total if total > 0 else 1.0
     log.info("%.1f grey levels from the mean texture, which holds %.0f %% of the contrast", typical, 100 * shared)
     contrast = 255 * np.sqrt(total / max(float(seen.sum()) * channels, 1.0))
-    if (
-        shared < AGREEMENT_MIN_CONTRAST_RATIO and contrast > AGREEMENT_MIN_GREY_LEVELS and not outliers
-    ):  # which spoil the mean for all
+    poor = shared < AGREEMENT_MIN_CONTRAST_RATIO and contrast > AGREEMENT_MIN_GREY_LEVELS
+    if poor and not outliers:  # which spoil the mean for all
         words = "the photographs hardly agree on the proxy: their mean holds %.0f %% of their contrast; look at "
         log.warning(
             words + "cameras and mesh (`eigenfield inspect CAPTURE --proxy MESH --overlay overlay.png`)", 100 * shared
