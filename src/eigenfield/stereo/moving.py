@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import distance_transform_edt, label, mean, sum_labels
 
+from eigenfield.runtime.parallel import parallel_map
 from eigenfield.stereo.detail import detail_pictures
 from eigenfield.stereo.estimate import (
     DEPTH_SWEEP_BIAS_LABELS,
@@ -40,8 +41,8 @@ MOVING_RANGE_PERCENTILES = (0.5, 99.5)  # of its labels, which are its range
 MOVING_UNCHANGED_LEVELS = 12.0  # cost of a label that no camera sees changed
 MOVING_MIN_CHANGED_SHARE = 0.6  # of the cameras that see a point, where something may move
 MOVING_MIN_VIEWS_SHARE = 0.4  # of all cameras, that must see such a point: few agree by chance
-MOVING_SHARE_STEPS = 2  # of labels, from one to the next at which changed pixels are counted
-MOVING_ROOM_PIXELS = 8  # of half the resolution, around the part that is looked at
+MOVING_SHARE_SCALE = 4  # of pixels and of labels at which changed pixels are counted
+MOVING_ROOM_PIXELS = 16  # around the part that is looked at
 MOVING_ROOM_STEPS = 3  # of labels, that are tried beyond those at which enough cameras see a change
 MOVING_STILL_LEVELS = 1.5  # by which another label must be better than the still surface
 MOVING_NEAR_STILL_LABELS = 1.5  # steps of labels from the still surface that count as on it
@@ -50,7 +51,7 @@ MOVING_SAME_LEVELS = 8.0  # difference from the frame before at which that is ha
 MOVING_MIN_GAIN_LEVELS = 1.0  # by which a region's labels must be better than the still surface, on average
 MOVING_MIN_REGION_FRACTION = 0.0002  # of the reference view; smaller regions are errors
 MOVING_HOLE_REGIONS = 4  # of such regions, up to which a hole is closed
-MOVING_ROUNDS = 2  # in the second, what moves hides what is behind it
+MOVING_FINE_PIXELS = 8  # from what moves at half the resolution, in which it is looked for at the whole one
 MOVING_EDGE_RADIUS_PIXELS, MOVING_EDGE_LEVELS = 2, 6.0  # of the guided filter that finds outlines
 
 
@@ -123,15 +124,15 @@ def find_moving(
     flags = _as_pictures(changed)
     at_rest = mean_texture(flags, matrices, d, hidden)[0][..., 0] < 1
     buffers = depth_buffers(matrices, d, packed.shape[1:], at_rest)
-    buffers = buffers if hidden is None else np.maximum(buffers, hidden)
-    share = _changed_share(flags, still, buffers)
+    views = _Views(packed, matrices, buffers, None).hiding(hidden)
     opacity, texture = np.zeros(d.shape, np.float32), mean_texture(packed, matrices, d, hidden)[0]
-    window = _Window.around(share, still)
+    window = _Window.around(_changed_share(replace(views, packed=flags), still), still)
     if window is None:
         return MovingDepth(d, opacity, texture)
     part = window.part
+    views = replace(views, matrices=window.still.matrices)
     cut = None if before is None else MovingDepth(before.d[part], before.opacity[part], before.texture[part])
-    found = _match(packed, window, buffers, hidden, cut)
+    found = _match(views, window, cut)
     if found is None:
         return MovingDepth(d, opacity, texture)
     opacity[part], texture[part] = found.opacity, found.texture
@@ -140,13 +141,46 @@ def find_moving(
 
 
 @dataclass(frozen=True, eq=False)
+class _Views:
+    """The photographs of a frame.
+
+    Attributes:
+        packed: (V, H, W).
+        matrices: (V, 3, 4).
+        buffers: (V, H, W) of what hides points.
+        hidden: (V, H, W) that hide pixels that do not count, and are part of `buffers`; None: all count.
+    """
+
+    packed: NDArray[np.uint32]
+    matrices: NDArray[np.float64]
+    buffers: NDArray[np.float32]
+    hidden: NDArray[np.float32] | None
+
+    def hiding(self, hidden: NDArray[np.float32] | None) -> _Views:
+        """The same without pixels that do not count."""
+        return self if hidden is None else replace(self, buffers=np.maximum(self.buffers, hidden), hidden=hidden)
+
+    def halved(self) -> _Views:
+        """The same at half the resolution. A pixel hides what all of its four pixels hide."""
+        buffers, hidden = (None if one is None else _halved_buffers(one) for one in (self.buffers, self.hidden))
+        assert buffers is not None
+        return _Views(halve_pictures(self.packed), halved_matrices(self.matrices), buffers, hidden)
+
+
+def _halved_buffers(buffers: NDArray[np.float32]) -> NDArray[np.float32]:
+    pair = np.ones((2, 2), np.uint8)
+    return np.array([cv2.erode(one, pair, anchor=(0, 0))[::2, ::2] for one in buffers], np.float32)
+
+
+@dataclass(frozen=True, eq=False)
 class _Window:
     """The part of the reference view in which something may move.
 
     Attributes:
-        part: Its rows and columns, which begin with even ones.
+        part: Its rows and columns, which begin with multiples of MOVING_SHARE_SCALE.
         still: Of the part alone, with the labels that are tried there.
-        share: (h / 2, w / 2, L) of `_changed_share`, with those labels.
+        share: (h, w, L) of `_changed_share`, at a resolution `scale` times lower and with every `scale`th label.
+        scale: See above.
         may_move: (h, w).
         floor: (h, w) lowest label that is tried.
         ceiling: (h, w) highest label that is tried.
@@ -155,6 +189,7 @@ class _Window:
     part: tuple[slice, slice]
     still: StillDepth
     share: NDArray[np.uint8]
+    scale: int
     may_move: NDArray[np.bool_]
     floor: NDArray[np.float32]
     ceiling: NDArray[np.float32]
@@ -162,83 +197,134 @@ class _Window:
     @staticmethod
     def around(share: NDArray[np.uint8], still: StillDepth) -> _Window | None:
         """The window for a whole `_changed_share`; None: nothing may move."""
-        changed = share >= MOVING_MIN_CHANGED_SHARE * 255
+        scale, changed = MOVING_SHARE_SCALE, share >= MOVING_MIN_CHANGED_SHARE * 255
         some = np.asarray(changed.any(axis=2))
         if not some.any():
             return None
         (top, bottom), (left, right) = ((at.min(), at.max() + 1) for at in np.nonzero(some))
-        room = MOVING_ROOM_PIXELS
-        half = slice(max(0, top - room), bottom + room), slice(max(0, left - room), right + room)
+        room = MOVING_ROOM_PIXELS // scale
+        low = slice(max(0, top - room), bottom + room), slice(max(0, left - room), right + room)
         height, width = still.d.shape
         part = (
-            slice(2 * half[0].start, min(2 * half[0].stop, height)),
-            slice(2 * half[1].start, min(2 * half[1].stop, width)),
+            slice(scale * low[0].start, min(scale * low[0].stop, height)),
+            slice(scale * low[1].start, min(scale * low[1].stop, width)),
         )
-        share, changed, d = share[half], changed[half], still.d[part]
-        steps = still.labels[::MOVING_SHARE_STEPS]
+        share, changed, d = share[low], changed[low], still.d[part]
+        steps = still.labels[::scale]
         first, last = changed.argmax(axis=2), len(steps) - 1 - changed[..., ::-1].argmax(axis=2)
 
         def whole(values: NDArray[Any]) -> NDArray[Any]:
-            return values.repeat(2, axis=0).repeat(2, axis=1)[: d.shape[0], : d.shape[1]]
+            return _enlarged(values, scale, d.shape)
 
-        may_move, more = whole(some[half]), MOVING_ROOM_STEPS * np.float32(still.step)
-        low, high = (np.where(may_move, whole(steps[k]), d) for k in (first, last))
+        may_move, more = whole(some[low]), MOVING_ROOM_STEPS * np.float32(still.step)
+        lowest, highest = (np.where(may_move, whole(steps[k]), d) for k in (first, last))
         around = np.ones((5, 5), np.uint8)
-        floor = np.asarray(cv2.erode(np.minimum(low, d) - more, around), np.float32)
-        ceiling = np.asarray(cv2.dilate(np.maximum(high, d) + more, around), np.float32)
+        floor = np.asarray(cv2.erode(np.minimum(lowest, d) - more, around), np.float32)
+        ceiling = np.asarray(cv2.dilate(np.maximum(highest, d) + more, around), np.float32)
         may_move = cv2.dilate(may_move.astype(np.uint8), np.ones((3, 3), np.uint8)) > 0
-        ends = np.searchsorted(still.labels, (floor[may_move].min(), ceiling[may_move].max()))
-        begin = int(ends[0]) // MOVING_SHARE_STEPS * MOVING_SHARE_STEPS
-        labels = still.labels[begin : max(int(ends[1]), begin + 3)]
         shift = np.eye(4)
         shift[0, 3], shift[1, 3] = part[1].start, part[0].start
-        return _Window(
-            part, StillDepth(still.matrices @ shift, d, labels), share[..., begin // MOVING_SHARE_STEPS :], may_move,
-            floor, ceiling,
-        )  # fmt: skip
+        whole_range = StillDepth(still.matrices @ shift, d, still.labels)
+        return _Window(part, whole_range, share, scale, may_move, floor, ceiling).with_fewer_labels()
+
+    def with_fewer_labels(self) -> _Window:
+        """The same with the labels that are tried somewhere."""
+        labels, scale = self.still.labels, self.scale
+        ends = np.searchsorted(labels, (self.floor[self.may_move].min(), self.ceiling[self.may_move].max()))
+        least = 2 * scale + 1  # three at the scale of the share
+        begin = max(0, min(int(ends[0]), len(labels) - least)) // scale * scale
+        labels = labels[begin : max(int(ends[1]), begin + least)]
+        return replace(self, still=replace(self.still, labels=labels), share=self.share[..., begin // scale :])
+
+    def halved(self) -> _Window:
+        """The same at half the resolution, with every second label."""
+        still, pair = self.still, np.ones((2, 2), np.uint8)
+        may_move = cv2.dilate(self.may_move.astype(np.uint8), pair, anchor=(0, 0))[::2, ::2] > 0
+        floor = np.asarray(cv2.erode(self.floor, pair, anchor=(0, 0))[::2, ::2], np.float32)
+        ceiling = np.asarray(cv2.dilate(self.ceiling, pair, anchor=(0, 0))[::2, ::2], np.float32)
+        small = StillDepth(halved_matrices(still.matrices), still.d[::2, ::2], still.labels[::2])
+        return _Window(self.part, small, self.share, self.scale // 2, may_move, floor, ceiling)
+
+    def near(self, d: NDArray[np.float32], moves: NDArray[np.bool_]) -> _Window:
+        """The same where something moves or stands still beside it, with the labels of both."""
+        around = np.ones((2 * MOVING_FINE_PIXELS + 1,) * 2, np.uint8)
+        may_move = self.may_move & (cv2.dilate(moves.astype(np.uint8), around) > 0)
+        d, more = np.where(moves, d, self.still.d), np.float32(MOVING_ROOM_STEPS * self.still.step)
+        floor = np.maximum(self.floor, cv2.erode(np.minimum(d, self.still.d), around) - more)
+        ceiling = np.minimum(self.ceiling, cv2.dilate(np.maximum(d, self.still.d), around) + more)
+        return replace(self, may_move=may_move, floor=floor, ceiling=ceiling).with_fewer_labels()
 
 
-def _match(
-    packed: NDArray[np.uint32], window: _Window, buffers: NDArray[np.float32], hidden: NDArray[np.float32] | None,
-    before: MovingDepth | None,
-) -> MovingDepth | None:  # fmt: skip
-    """What moves in a window; None: nothing.
+def _enlarged(values: NDArray[Any], scale: int, shape: tuple[int, ...]) -> NDArray[Any]:
+    """A picture in which each pixel stands for scale x scale ones, cut to a shape."""
+    return values.repeat(scale, axis=0).repeat(scale, axis=1)[: shape[0], : shape[1]]
 
-    Args:
-        buffers: (V, H, W) of what stands still.
-        hidden: (V, H, W) that hide pixels that do not count; None: all count.
-        before: Of the frame before, in the window.
+
+@dataclass(frozen=True, eq=False)
+class _Match:
+    """What moves in a window.
+
+    Attributes:
+        d: (h, w) labels.
+        moves: (h, w) where they are those of something that moves.
+        confidence: (h, w) of `semi_global_matching`.
+        guide: (h, w, 3) what the views show, in grey levels.
     """
-    still, may_move = window.still, window.may_move
-    matrices, d = still.matrices, still.d
-    detail = detail_pictures(packed, DEPTH_SWEEP_DETAIL_GAIN, blur_sigma=0)
-    compared, known = warp_reference_picture(detail, matrices, d.shape)
-    guide, _ = warp_reference_picture(packed, matrices, d.shape)
-    if hidden is not None:
-        known &= warp_reference_picture(_as_pictures(hidden < 0), matrices, d.shape)[0][..., 0] > 254
-    beside = mean_texture(packed, matrices, d, hidden)[0]
-    found, moves, confidence = d, may_move, np.zeros(d.shape, np.float32)
-    for _ in range(MOVING_ROUNDS):
+
+    d: NDArray[np.float32]
+    moves: NDArray[np.bool_]
+    confidence: NDArray[np.float32]
+    guide: NDArray[np.float32]
+
+    @staticmethod
+    def of(views: _Views, window: _Window, d: NDArray[np.float32]) -> _Match:
+        """By a sweep over the labels of the window.
+
+        Args:
+            d: (h, w) labels at which colours are taken that steer the matching.
+        """
+        packed, matrices, still = views.packed, views.matrices, window.still
+        detail = detail_pictures(packed, DEPTH_SWEEP_DETAIL_GAIN, blur_sigma=0)
+        compared, known = warp_reference_picture(detail, matrices, still.d.shape)
+        own, _ = warp_reference_picture(packed, matrices, still.d.shape)
+        if views.hidden is not None:
+            known &= warp_reference_picture(_as_pictures(views.hidden < 0), matrices, still.d.shape)[0][..., 0] > 254
         cost = plane_sweep(
-            detail, matrices, d.shape, still.labels, reference=compared, known=known, mask=may_move,
-            floor=window.floor, ceiling=window.ceiling, buffers=buffers, bias=DEPTH_SWEEP_BIAS_LABELS,
-            half_plane_fraction=1.0, min_views=least_views(len(packed)),
-            unseen_cost=DEPTH_UNSEEN_COST_LEVELS,
+            detail, matrices, still.d.shape, still.labels, reference=compared, known=known, mask=window.may_move,
+            floor=window.floor, ceiling=window.ceiling, buffers=views.buffers, bias=DEPTH_SWEEP_BIAS_LABELS,
+            half_plane_fraction=1.0, min_views=least_views(len(packed)), unseen_cost=DEPTH_UNSEEN_COST_LEVELS,
         )  # fmt: skip
-        guide = np.where(known[..., None], guide, beside).astype(np.float32)
+        beside = mean_texture(packed, matrices, d, views.buffers, DEPTH_SWEEP_BIAS_LABELS)[0]
+        guide = np.where(known[..., None], own, beside).astype(np.float32)
         cost, gain = _priced(cost, window)
         found, confidence = semi_global_matching(cost, guide.mean(axis=2), still.labels)
-        moves = _moving_regions(found, gain, still, may_move)
-        if not moves.any():
-            return None
-        buffers = np.maximum(buffers, depth_buffers(matrices, found, packed.shape[1:], moves))
-        beside = mean_texture(packed, matrices, np.where(moves, found, d), buffers, DEPTH_SWEEP_BIAS_LABELS)[0]
+        return _Match(found, _moving_regions(found, gain, still, window.may_move), confidence, guide)
+
+
+def _match(views: _Views, window: _Window, before: MovingDepth | None) -> MovingDepth | None:
+    """What moves in a window, first at half the resolution; None: nothing.
+
+    Args:
+        before: Of the frame before, in the window.
+    """
+    still, packed, matrices = window.still, views.packed, views.matrices
+    half = window.halved()
+    coarse = _Match.of(views.halved(), half, half.still.d)
+    if not coarse.moves.any():
+        return None
+    d, moves = (_enlarged(one, 2, still.d.shape) for one in (coarse.d, coarse.moves))
+    hides = depth_buffers(matrices, d, packed.shape[1:], moves)
+    views = replace(views, buffers=np.maximum(views.buffers, hides))
+    fine = _Match.of(views, window.near(d, moves), np.where(moves, d, still.d))
+    moves, guide = fine.moves, fine.guide
+    if not moves.any():
+        return None
     nearest = distance_transform_edt(~moves, return_distances=False, return_indices=True)
-    smooth = smooth_depth(found[tuple(nearest)], np.where(moves, confidence, 0), guide)
+    smooth = smooth_depth(fine.d[tuple(nearest)], np.where(moves, fine.confidence, 0), guide)
     if before is not None:
-        smooth = smooth + _kept_share(packed, still, before, hidden) * (before.d - smooth)
+        smooth = smooth + _kept_share(packed, still, before, views.hidden) * (before.d - smooth)
     smooth = np.clip(smooth, still.labels[0], still.labels[-1])
-    texture, count = mean_texture(packed, matrices, np.where(moves, smooth, d), hidden)
+    texture, count = mean_texture(packed, matrices, np.where(moves, smooth, still.d), views.hidden)
     return MovingDepth(smooth, _soft_outlines(moves, guide), np.where(count[..., None] > 0, texture, guide))
 
 
@@ -247,22 +333,22 @@ def _as_pictures(masks: NDArray[np.bool_]) -> NDArray[np.uint32]:
     return np.where(masks, np.uint32(0xFFFFFF), np.uint32(0))
 
 
-def _changed_share(flags: NDArray[np.uint32], still: StillDepth, buffers: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """(h / 2, w / 2, labels) uint8 how many of the views that see a point see a changed pixel there, 255: all; 0 where
-    few see it.
+def _changed_share(flags: _Views, still: StillDepth) -> NDArray[np.uint8]:
+    """(h / scale, w / scale, labels) uint8 how many of the views that see a point see a changed pixel there, 255: all;
+    0 where few see it. The scale is MOVING_SHARE_SCALE, of pixels and of labels.
 
-    At half the resolution every second label is as fine.
+    Args:
+        flags: White where a pixel has changed.
     """
-    height, width = still.d.shape
-    small, matrices = halve_pictures(flags), halved_matrices(still.matrices)
-    pair = np.ones((2, 2), np.uint8)
-    near = np.array([cv2.erode(one, pair, anchor=(0, 0))[::2, ::2] for one in buffers], np.float32)
-    labels = still.labels[::MOVING_SHARE_STEPS]
-    share = np.empty(((height + 1) // 2, (width + 1) // 2, len(labels)), np.uint8)
+    shape, scale = still.d.shape, 1
+    while scale < MOVING_SHARE_SCALE:
+        flags, shape, scale = flags.halved(), ((shape[0] + 1) // 2, (shape[1] + 1) // 2), 2 * scale
+    labels = still.labels[::scale]
+    share = np.empty((*shape, len(labels)), np.uint8)
     for k, value in enumerate(labels):
-        plane = np.full(share.shape[:2], value, np.float32)
-        white, count = mean_texture(small, matrices, plane, near, DEPTH_SWEEP_BIAS_LABELS)
-        share[..., k] = np.where(count >= MOVING_MIN_VIEWS_SHARE * len(small), white[..., 0], 0)
+        plane = np.full(shape, value, np.float32)
+        white, count = mean_texture(flags.packed, flags.matrices, plane, flags.buffers, DEPTH_SWEEP_BIAS_LABELS)
+        share[..., k] = np.where(count >= MOVING_MIN_VIEWS_SHARE * len(flags.packed), white[..., 0], 0)
     return share
 
 
@@ -283,19 +369,21 @@ def _priced(cost: NDArray[np.uint8], window: _Window) -> tuple[NDArray[np.uint8]
     still, units, top = window.still, float(SWEEP_COST_UNITS_PER_LEVEL), SWEEP_EXCLUDED_COST - 1
     index = np.arange(len(still.labels), dtype=np.float32)
     base = np.clip((still.d - still.labels[0]) / still.step, 0, index[-1])
-    result = np.empty_like(cost)
-    gain = np.zeros(cost.shape[:2], np.float32)
-    for row in range(len(cost)):  # one row at a time: the volume is large
-        agree = cost[row].astype(np.float32)
+    result, gain = np.empty_like(cost), np.zeros(cost.shape[:2], np.float32)
+
+    def price(row: int) -> None:  # one row at a time: the volume is large
         on_still = np.abs(index - base[row][:, None]) <= MOVING_NEAR_STILL_LABELS
-        share = window.share[row // 2].repeat(2, axis=0).repeat(MOVING_SHARE_STEPS, axis=1)[: len(agree), : len(index)]
+        result[row] = np.where(on_still, 0, top)
+        at = np.flatnonzero(window.may_move[row])
+        agree, on_still = cost[row, at].astype(np.float32), on_still[at]
+        share = _enlarged(window.share[row // window.scale], window.scale, cost.shape[1:])[at]
         moving = agree + units * MOVING_UNCHANGED_LEVELS / 255 * (255 - share.astype(np.float32))
         stays = np.where(on_still, agree, np.inf).min(axis=1, initial=top)
-        gain[row] = (stays - np.where(on_still, top, moving).min(axis=1)) / units
+        gain[row, at] = (stays - np.where(on_still, top, moving).min(axis=1, initial=top)) / units
         own = np.where(on_still, np.maximum(stays - units * MOVING_STILL_LEVELS, 0)[:, None], moving)
-        at_rest = ~window.may_move[row]
-        own[at_rest] = np.where(on_still[at_rest], 0, top)
-        result[row] = np.minimum(np.rint(own), top)
+        result[row, at] = np.minimum(np.rint(own), top)
+
+    parallel_map(price, range(len(cost)))
     return result, gain
 
 
