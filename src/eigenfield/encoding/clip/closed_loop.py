@@ -192,14 +192,10 @@ def _close(group: GroupFrames, opened: OpenGroup, weights: Sequence[_CodedWeight
     def make(pixels: FramePixels, given: tuple[Arrays, Pictures]) -> Arrays:
         found: dict[str, NDArray[Any]] = {}
         for number, model in enumerate(_models(clip, *given, [one.weights for one in weights])):
-            plane, variance, fitted = (
-                clip.planes[number],
-                opened.weights[number].variance,
-                pixels.fitted(clip.planes[number]),
-            )
-            with pixels.weighed(fitted, variance) as data:
+            plane, variance = clip.planes[number], opened.weights[number].variance
+            with pixels.weighed(pixels.fitted(plane), variance) as data:
                 equations = residual(data, model, MEAN_WANTED, plane.composer, variance)
-                scales = plane.scales_of(fitted)
+                scales = pixels.scales(plane)
                 fit_textures(data, model, scales, FIT_CLOSING_ITERATIONS, mean_only=True, equations=equations)
             found[f"mean{number}"] = model.mean
             found[f"psnr{number}"] = np.array(psnr_of(equations.squares, equations.pixels, model.channels))

@@ -109,12 +109,14 @@ class GroupFrames:
 
     @contextlib.contextmanager
     def changing(self) -> Iterator[GroupFrames]:
-        """The same with what changes, which is what frames after the first are fitted to."""
-        if self.rest is None:
-            yield self
-            return
-        with self.clip.open_active(self.rest, self.numbers) as active:
-            yield replace(self, active=active)
+        """The same with what changes, which is what frames after the first are fitted to, and with room for what passes
+        need again of frames."""
+        with self.clip.caching() as clip:
+            if self.rest is None:
+                yield replace(self, clip=clip)
+                return
+            with clip.open_active(self.rest, self.numbers) as active:
+                yield replace(self, clip=clip, active=active)
 
     def photographs(self, number: int) -> DecodedObservations:
         """Those of a frame, decoded; of an `opened` group."""

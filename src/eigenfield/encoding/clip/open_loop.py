@@ -93,7 +93,7 @@ def _fit_means(clip: ClipPlan, pixels: FramePixels, first: Arrays | None) -> Arr
     found: dict[str, NDArray[np.float32] | NDArray[np.float64]] = {}
     for number, plane in enumerate(clip.planes):
         data, model = pixels.fitted(plane), plane.settings.grey_model()
-        scales = plane.scales_of(data)
+        scales = pixels.scales(plane)
         _fit(pixels, data, model, scales, FIT_MEAN_ITERATIONS, number, first)
         found[f"mean{number}"] = model.mean
         with open_residual_maps(data, model, scales, plane.rectangle, plane.settings.scattered, clip.work) as maps:
@@ -126,7 +126,7 @@ def _fit_textures(
     found: dict[str, NDArray[np.float32] | NDArray[np.float64]] = {}
     for number, (plane, shared) in enumerate(zip(clip.planes, weights, strict=True)):
         model, fitted = plane.settings.grey_model(), pixels.fitted(plane)
-        model.mean, scales = before[f"mean{number}"], plane.scales_of(fitted)
+        model.mean, scales = before[f"mean{number}"], pixels.scales(plane)
         with pixels.weighed(fitted, shared.variance) as data:
             textures = before.get(f"textures{number}")
             if textures is None:

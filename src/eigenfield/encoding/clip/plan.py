@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,10 +43,14 @@ from eigenfield.encoding.options import DEFAULT_PRESET, PRESETS, SUBSAMPLE_MIN_O
 from eigenfield.encoding.plan import EncodePlan, component_count
 from eigenfield.encoding.views import nothing_seen_error
 from eigenfield.rendering.software.drawing import make_surface
-from eigenfield.runtime.files import scratch_arrays
+from eigenfield.runtime.files import scratch_array, scratch_arrays
+from eigenfield.runtime.scratch_cache import ScratchCache, open_scratch_cache
+
+T = TypeVar("T")
 
 MAX_TEXTURES = 12  # of luma, unless more are asked for: players sum all of them for each frame
 OpenActive = Callable[[Footprints, Footprints], contextlib.AbstractContextManager[tuple[ActivePlane, ...]]]
+CACHE_MAX_BYTES = 4 << 30  # of scratch files, for what passes over frames of moving meshes need again
 THINNED_STEP = 2  # pixels, each way, to one that weights are fitted to: all frames of a group have a part in them
 
 
@@ -71,10 +76,20 @@ class ClipPlane:
         rows, columns = self.settings.grid
         return 0, rows, 0, columns
 
-    def scales_of(self, data: FitData) -> Scales:
-        """Of a frame."""
-        same = data.observations.masks is None and not self.moves
-        return self.scales if same else _scales(data, self.settings)
+    @contextlib.contextmanager
+    def open_scales(self, data: FitData, work: Path | None) -> Iterator[Scales]:
+        """Those of a frame of its own, in scratch files."""
+        found = _scales(data, self.settings)
+        with contextlib.ExitStack() as opened:
+
+            def put(values: NDArray[np.float32]) -> NDArray[np.float32]:
+                room = opened.enter_context(scratch_array(values.shape, np.float32, work))
+                room[:] = values
+                return np.asarray(room)
+
+            mean, coarse = put(found.mean), put(found.coarse)
+            noise = (put(found.mean_noise), put(found.coarse_noise)) if found.soft else (mean, coarse)
+            yield replace(found, mean=mean, coarse=coarse, mean_noise=noise[0], coarse_noise=noise[1])
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,21 +97,34 @@ class FramePixels:
     """The photographs of a frame.
 
     Attributes:
+        number: Of the frame, in the clip.
         every: All their pixels.
         thinned: Every THINNED_STEP-th.
-        few: As in `ClipPlan`.
+        few, cache: As in `ClipPlan`.
+        opened: Closes what is opened for the frame.
         active: The part of each plane that changes within the group; None: all is fitted.
     """
 
+    number: int
     every: FitData
     thinned: FitData
     few: bool
     work: Path | None
-    active: tuple[ActivePlane, ...] | None = None
+    cache: ScratchCache | None
+    opened: contextlib.ExitStack
+    active: tuple[ActivePlane, ...] | None
 
     def fitted(self, plane: ClipPlane) -> FitData:
         """What mean and textures of a plane are fitted to."""
         return self.thinned if plane.preset.subsampled and not self.few else self.every
+
+    def scales(self, plane: ClipPlane) -> Scales:
+        """Those of a plane in what it is fitted to."""
+        data, key = self.fitted(plane), ("scales", self.number, plane.preset.name)
+        if data.observations.masks is None and not plane.moves:
+            return plane.scales
+        found = _kept(self.cache, key, lambda: plane.open_scales(data, self.work), _bytes_of_scales)
+        return self.opened.enter_context(found)
 
     def weighed(self, data: FitData, variance: float | None) -> contextlib.AbstractContextManager[FitData]:
         """The data, whose pixels count for less where few cameras see them and they are off by far more than a
@@ -146,6 +174,7 @@ class ClipPlan:
         moving: The mesh at each frame; None: it stands still.
         opacity: From the number of a frame to that of its sheets, as a file has it; None: there are none, or it is not
             coded yet.
+        cache: Of what passes need again of each frame; None: they make it anew.
     """
 
     plan: EncodePlan
@@ -156,6 +185,7 @@ class ClipPlan:
     work: Path | None
     moving: MovingMesh | None = None
     opacity: Callable[[int], NDArray[np.float32]] | None = None
+    cache: ScratchCache | None = None
 
     @property
     def cameras(self) -> Sequence[Camera]:
@@ -190,12 +220,27 @@ class ClipPlan:
         if self.moving is None:
             yield self.footprints, self.thinned
             return
+        with _kept(
+            self.cache, ("footprints", number), lambda: self._open_moving(number), _bytes_of_footprints
+        ) as found:
+            yield found
+
+    @contextlib.contextmanager
+    def _open_moving(self, number: int) -> Iterator[tuple[Footprints, Footprints]]:
+        """`open_footprints` on a mesh that moves."""
+        assert self.moving is not None
         proxy = self.moving.proxy(number, None if self.opacity is None else self.opacity(number))
         with (
             self.open_on_proxy(proxy, self.footprints.surface.size) as every,
             subsampled_footprints(every, THINNED_STEP, self.work) as thinned,
         ):
             yield every, thinned
+
+    @contextlib.contextmanager
+    def caching(self) -> Iterator[ClipPlan]:
+        """The same, which keeps what passes need again of each frame, as long as there is room."""
+        with open_scratch_cache(CACHE_MAX_BYTES, self.work) as cache:
+            yield replace(self, cache=cache)
 
     def open_on_proxy(self, proxy: Proxy, size: tuple[int, int]) -> contextlib.AbstractContextManager[Footprints]:
         """The footprints on another proxy under an atlas of (rows, columns)."""
@@ -261,11 +306,37 @@ class ClipPlan:
         Args:
             active: Of `open_active`; None: all is fitted.
         """
-        with self.open_footprints(number) as (every, thinned):
-            data = FitData(photographs, every)
-            planes = contextlib.nullcontext(None) if active is None else active(every, thinned)
-            with open_subsampled(data, THINNED_STEP, self.work, thinned) as some, planes as changing:
-                yield FramePixels(data, some, self.few, self.work, changing)
+        with contextlib.ExitStack() as opened:
+            every, thinned = opened.enter_context(self.open_footprints(number))
+            data, changing = FitData(photographs, every), None
+            some = opened.enter_context(open_subsampled(data, THINNED_STEP, self.work, thinned))
+            if active is not None:
+                cache = None if self.moving is None else self.cache
+                own = _kept(cache, ("active", number), lambda: active(every, thinned), _bytes_of_active)
+                changing = opened.enter_context(own)
+            yield FramePixels(number, data, some, self.few, self.work, self.cache, opened, changing)
+
+
+def _kept(
+    cache: ScratchCache | None,
+    key: Hashable,
+    make: Callable[[], contextlib.AbstractContextManager[T]],
+    size: Callable[[T], int],
+) -> contextlib.AbstractContextManager[T]:
+    """As `ScratchCache.open`; made anew where there is no cache."""
+    return make() if cache is None else cache.open(key, make, size)
+
+
+def _bytes_of_footprints(found: tuple[Footprints, ...]) -> int:
+    return sum(one.nbytes for one in found)
+
+
+def _bytes_of_active(found: tuple[ActivePlane, ...]) -> int:
+    return sum(one.footprints.nbytes for one in found)
+
+
+def _bytes_of_scales(found: Scales) -> int:
+    return 2 * (found.mean.nbytes + found.coarse.nbytes)
 
 
 @contextlib.contextmanager

@@ -9,13 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from eigenfield.encoding.fitted.model import Block, PlaneModel
+from eigenfield.encoding.fitted.model import PlaneModel
 from eigenfield.encoding.fitted.solve import Scales
 from eigenfield.encoding.spread import push_pull
 from eigenfield.imaging.raster import rasterise
 from eigenfield.proxy.topology import face_components
 from eigenfield.rendering.software.drawing import Surface
-from eigenfield.runtime.parallel import parallel_map
+from eigenfield.runtime.parallel import even_pieces, parallel_map
 
 PRECISION_CELL_TEXELS = 64  # side of a cell of the mean that has one precision
 PRECISION_MIN_FACTOR = 2**-1.5  # lower ones gain nothing (Tarot, Shop), and show where few cameras look
@@ -26,6 +26,7 @@ OBSERVED_MIN_SHARE_RATIO = 0.3  # of the median share: less beside a chart count
 # Beside what no photograph sees: the nearer a texel is, the less is filled from it, for it holds colours of what hides
 # the rest. Chosen on Temple
 OUTLINE_TEXELS = 16.0
+FILL_TASKS = 4  # into which a block's textures are divided: there may be hundreds of charts, each with work of its own
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,11 +67,12 @@ def fill_unseen(model: PlaneModel, scales: Scales, surface: Surface, outline: fl
     model.mean = _filling(scales.mean, surface, whole, outline).fill(model.mean)
     for block in model.blocks:
         filling = _filling(scales.coarse, surface, block.window, outline)
+        pictures = block.textures.reshape(-1, *block.textures.shape[2:])
 
-        def fill(index: int, block: Block = block, filling: _Filling = filling) -> None:
-            block.textures[index] = filling.fill(block.textures[index])
+        def fill(part: tuple[int, int], pictures: NDArray[np.float32] = pictures, filling: _Filling = filling) -> None:
+            pictures[slice(*part)] = filling.fill(pictures[slice(*part)])
 
-        parallel_map(fill, range(block.count))
+        parallel_map(fill, even_pieces(len(pictures), FILL_TASKS))
 
 
 def mean_precision(scales: Scales) -> NDArray[np.float32] | None:

@@ -61,6 +61,11 @@ class Footprints:
     def __len__(self) -> int:
         return len(self.shapes)
 
+    @property
+    def nbytes(self) -> int:
+        """Of its scratch files."""
+        return self.counts.nbytes + self.texel_coordinates.nbytes + self.shares.nbytes
+
     def of(self, camera: int) -> Footprint:
         """(h, w) counts, (n, 2) texel coordinates and (n,) or (0,) shares of a camera."""
         counts = self.counts[self.pixel_offsets[camera] : self.pixel_offsets[camera + 1]]

@@ -88,7 +88,7 @@ def render_and_backproject(
     sign = MINUS if photographs else PLUS
     fine_mean = composer.fine_mean(mean) if composer is not None and mean is not None else None
     # What is drawn goes back to where it came from, and nearly every pixel shows a single point
-    symmetric = not photographs and composer is None and not len(data.footprints.shares)
+    symmetric = not photographs and composer is None
     symmetric = symmetric and (mean is not None, coarse and textures is not None) == (for_mean, for_coarse)
     # All batches share their arrays: memory given back and asked for anew costs more than what is done with it
     batches = even_pieces(len(data), -(-len(data) // PASS_BATCH_OBSERVATIONS))
