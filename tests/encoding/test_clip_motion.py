@@ -12,7 +12,7 @@ import pytest
 from eigenfield.core.errors import EigenfieldError, FormatError, OptionError, ProxyError
 from eigenfield.core.mesh import Mesh
 from eigenfield.encoding import EncodeOptions, Target, encode_footage
-from eigenfield.encoding.clip import target
+from eigenfield.encoding.clip import plan, target
 from eigenfield.gltf import load_clip, parts, save, validate
 from eigenfield.gltf.clips import StoredGroup
 from eigenfield.gltf.group import group_bytes
@@ -40,6 +40,13 @@ def moving(plate, tmp_path_factory):
     meshes, footage = plate
     work = tmp_path_factory.mktemp("work")
     return encode_footage(footage, meshes, OPTIONS, group="6", work=work)
+
+
+def test_a_clip_is_the_same_where_there_is_no_room_for_what_passes_need_again(plate, moving, monkeypatch):
+    meshes, footage = plate
+    monkeypatch.setattr(plan, "CACHE_MAX_BYTES", 0)
+    again = encode_footage(footage, meshes, OPTIONS, group="6")
+    assert group_bytes(again.groups.coded(0)) == group_bytes(moving.groups.coded(0))
 
 
 def drawn(clip, number, camera):

@@ -58,7 +58,10 @@ def in_light_of(picture: NDArray[np.uint8], still: NDArray[np.uint8]) -> NDArray
         weight = 1 / (1 + ((ratio - terms @ found) / LIGHT_SCALE) ** 2)
         normal = np.einsum("nc,ni,nj->cij", weight, terms, terms) + 1e-6 * np.eye(3)
         found = np.linalg.solve(normal, np.einsum("nc,ni,nc->ci", weight, terms, ratio)[..., None])[..., 0].T
-    across = (2 * (np.arange(width) + 0.5) / width - 1)[None, :, None]
-    down = (2 * (np.arange(height) + 0.5) / height - 1)[:, None, None]
-    factor = np.exp(found[0] + found[1] * across + found[2] * down)
-    return ((still + LIGHT_DARK_LEVELS) * factor - LIGHT_DARK_LEVELS).astype(np.float32)
+    across, down = (
+        np.exp((2 * (np.arange(side) + 0.5) / side - 1)[:, None] * slope).astype(np.float32)
+        for side, slope in ((width, found[1]), (height, found[2]))
+    )
+    factor = np.exp(found[0]).astype(np.float32) * across[None] * down[:, None]
+    dark = np.float32(LIGHT_DARK_LEVELS)
+    return np.asarray((still + dark) * factor - dark, np.float32)

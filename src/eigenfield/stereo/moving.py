@@ -124,7 +124,7 @@ def find_moving(
     flags = _as_pictures(changed)
     at_rest = mean_texture(flags, matrices, d, hidden)[0][..., 0] < 1
     buffers = depth_buffers(matrices, d, packed.shape[1:], at_rest)
-    views = _Views(packed, matrices, buffers, None).hiding(hidden)
+    views = _Views(packed, matrices, buffers if hidden is None else np.maximum(buffers, hidden), hidden)
     opacity, texture = np.zeros(d.shape, np.float32), mean_texture(packed, matrices, d, hidden)[0]
     window = _Window.around(_changed_share(replace(views, packed=flags), still), still)
     if window is None:
@@ -156,15 +156,11 @@ class _Views:
     buffers: NDArray[np.float32]
     hidden: NDArray[np.float32] | None
 
-    def hiding(self, hidden: NDArray[np.float32] | None) -> _Views:
-        """The same without pixels that do not count."""
-        return self if hidden is None else replace(self, buffers=np.maximum(self.buffers, hidden), hidden=hidden)
-
     def halved(self) -> _Views:
         """The same at half the resolution. A pixel hides what all of its four pixels hide."""
-        buffers, hidden = (None if one is None else _halved_buffers(one) for one in (self.buffers, self.hidden))
-        assert buffers is not None
-        return _Views(halve_pictures(self.packed), halved_matrices(self.matrices), buffers, hidden)
+        packed, matrices = halve_pictures(self.packed), halved_matrices(self.matrices)
+        hidden = None if self.hidden is None else _halved_buffers(self.hidden)
+        return _Views(packed, matrices, _halved_buffers(self.buffers), hidden)
 
 
 def _halved_buffers(buffers: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -319,8 +315,9 @@ def _match(views: _Views, window: _Window, before: MovingDepth | None) -> Moving
     moves, guide = fine.moves, fine.guide
     if not moves.any():
         return None
-    nearest = distance_transform_edt(~moves, return_distances=False, return_indices=True)
-    smooth = smooth_depth(fine.d[tuple(nearest)], np.where(moves, fine.confidence, 0), guide)
+    known = moves & _is_apart(fine.d, still)
+    nearest = distance_transform_edt(~known, return_distances=False, return_indices=True)
+    smooth = smooth_depth(fine.d[tuple(nearest)], np.where(known, fine.confidence, 0), guide)
     if before is not None:
         smooth = smooth + _kept_share(packed, still, before, views.hidden) * (before.d - smooth)
     smooth = np.clip(smooth, still.labels[0], still.labels[-1])
@@ -370,14 +367,18 @@ def _priced(cost: NDArray[np.uint8], window: _Window) -> tuple[NDArray[np.uint8]
     index = np.arange(len(still.labels), dtype=np.float32)
     base = np.clip((still.d - still.labels[0]) / still.step, 0, index[-1])
     result, gain = np.empty_like(cost), np.zeros(cost.shape[:2], np.float32)
+    below = np.arange(len(index)) // window.scale
+    above = np.minimum(below + 1, window.share.shape[2] - 1)
+    between = index / window.scale - below.astype(np.float32)
 
     def price(row: int) -> None:  # one row at a time: the volume is large
         on_still = np.abs(index - base[row][:, None]) <= MOVING_NEAR_STILL_LABELS
         result[row] = np.where(on_still, 0, top)
         at = np.flatnonzero(window.may_move[row])
         agree, on_still = cost[row, at].astype(np.float32), on_still[at]
-        share = _enlarged(window.share[row // window.scale], window.scale, cost.shape[1:])[at]
-        moving = agree + units * MOVING_UNCHANGED_LEVELS / 255 * (255 - share.astype(np.float32))
+        share = window.share[row // window.scale, at // window.scale].astype(np.float32)
+        share = share[:, below] + between * (share[:, above] - share[:, below])
+        moving = agree + units * MOVING_UNCHANGED_LEVELS / 255 * (255 - share)
         stays = np.where(on_still, agree, np.inf).min(axis=1, initial=top)
         gain[row, at] = (stays - np.where(on_still, top, moving).min(axis=1, initial=top)) / units
         own = np.where(on_still, np.maximum(stays - units * MOVING_STILL_LEVELS, 0)[:, None], moving)
@@ -387,12 +388,16 @@ def _priced(cost: NDArray[np.uint8], window: _Window) -> tuple[NDArray[np.uint8]
     return result, gain
 
 
+def _is_apart(d: NDArray[np.float32], still: StillDepth) -> NDArray[np.bool_]:
+    """(h, w) which labels are not the still surface's; one may lie half a step beside that which was tried."""
+    return np.abs(d - still.d) > (MOVING_NEAR_STILL_LABELS + 0.5) * still.step
+
+
 def _moving_regions(
     found: NDArray[np.float32], gain: NDArray[np.float32], still: StillDepth, may_move: NDArray[np.bool_]
 ) -> NDArray[np.bool_]:
     """(h, w) pixels whose label is not the still surface's, in regions that are large and pay; holes are closed."""
-    apart = (MOVING_NEAR_STILL_LABELS + 0.5) * still.step  # a label may lie half a step beside the one that was tried
-    moves = may_move & (np.abs(found - still.d) > apart)
+    moves = may_move & _is_apart(found, still)
     least = max(4, round(MOVING_MIN_REGION_FRACTION * moves.size))
     regions, count = label(moves)
     numbers = np.arange(1, count + 1)

@@ -119,6 +119,8 @@ class MovingMesh:
         if self.opacity is None and not moving.any():
             return found
         for first, last in pairwise(accumulate(self.sheets or (len(self.mesh.faces),), initial=0)):
+            if first == 0 and not moving[:last].any():
+                continue  # the backmost sheet is opaque
             least, most = np.ones(found.shape, np.float32), np.zeros(found.shape, np.float32)
             for number in numbers:
                 mesh, opacity = self.at(number), None if self.opacity is None else self.opacity[number - self.first]
