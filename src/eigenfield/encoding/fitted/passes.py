@@ -27,6 +27,7 @@ from eigenfield.runtime.parallel import even_pieces, parallel_map
 
 PASS_BATCH_OBSERVATIONS = 48  # whose sums are in memory at a time: each batch reads and writes all textures once
 PASS_TASKS = 8  # of a batch, each with sums of its own
+SYMMETRIC_MAX_POINTS = 1.3  # a pixel, of sheets: measured with one and two
 PLUS, MINUS = np.float32(1), np.float32(-1)
 
 Textures = list[NDArray[np.float32]]
@@ -87,8 +88,10 @@ def render_and_backproject(
     for_coarse = coarse and (for_textures or for_weights)
     sign = MINUS if photographs else PLUS
     fine_mean = composer.fine_mean(mean) if composer is not None and mean is not None else None
-    # What is drawn goes back to where it came from, and nearly every pixel shows a single point
-    symmetric = not photographs and composer is None
+    # What is drawn goes back to where it came from. That is slower where many pixels show several points
+    points, shown = data.footprints.offsets[-1], data.footprints.pixel_offsets[-1]
+    single = not len(data.footprints.shares) or points < SYMMETRIC_MAX_POINTS * shown
+    symmetric = not photographs and composer is None and single
     symmetric = symmetric and (mean is not None, coarse and textures is not None) == (for_mean, for_coarse)
     # All batches share their arrays: memory given back and asked for anew costs more than what is done with it
     batches = even_pieces(len(data), -(-len(data) // PASS_BATCH_OBSERVATIONS))
