@@ -5,16 +5,24 @@ from __future__ import annotations
 import contextlib
 import shutil
 import tempfile
-from collections.abc import Callable, Hashable, Iterator
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, Protocol, TypeVar
 
 from eigenfield.runtime.files import output_errors
 
-T = TypeVar("T")
-
 FREE_SHARE = 0.25  # of the disk's free space that a cache takes at most
+
+
+class Sized(Protocol):
+    """What lies in scratch files, of so many bytes."""
+
+    @property
+    def nbytes(self) -> int: ...
+
+
+T = TypeVar("T", bound=Sequence[Sized])
 
 
 @dataclass(eq=False)
@@ -22,7 +30,7 @@ class ScratchCache:
     """Values in scratch files, by key.
 
     Attributes:
-        left: Bytes that it may still take.
+        left: Bytes that it has room for; 0: it keeps nothing.
     """
 
     left: int
@@ -30,22 +38,16 @@ class ScratchCache:
     _opened: contextlib.ExitStack = field(default_factory=contextlib.ExitStack)
 
     @contextlib.contextmanager
-    def open(
-        self, key: Hashable, make: Callable[[], contextlib.AbstractContextManager[T]], size: Callable[[T], int]
-    ) -> Iterator[T]:
-        """The value of a key, which is made where it is not there, and stays where there is room for it.
-
-        Args:
-            make: Opens the value.
-            size: Its bytes.
-        """
+    def open(self, key: Hashable, make: Callable[[], contextlib.AbstractContextManager[T]]) -> Iterator[T]:
+        """The value of a key, which is opened by `make` where it is not there, and stays where there is room for it."""
         if key in self._values:
             yield self._values[key]
             return
         with contextlib.ExitStack() as own:
             value = own.enter_context(make())
-            if size(value) <= self.left:
-                self.left -= size(value)
+            size = sum(one.nbytes for one in value)
+            if size < self.left:
+                self.left -= size
                 self._values[key] = value
                 self._opened.push(own.pop_all())
             yield value

@@ -41,6 +41,11 @@ class ActivePlane:
     mean: NDArray[np.bool_]
     coarse: NDArray[np.bool_]
 
+    @property
+    def nbytes(self) -> int:
+        """Of its scratch files."""
+        return self.footprints.nbytes
+
     def data(self, whole: FitData) -> FitData:
         """The same photographs without the pixels that are left out."""
         return replace(whole, footprints=self.footprints)

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Callable, Hashable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,10 +45,8 @@ from eigenfield.rendering.software.drawing import make_surface
 from eigenfield.runtime.files import scratch_array, scratch_arrays
 from eigenfield.runtime.scratch_cache import ScratchCache, open_scratch_cache
 
-T = TypeVar("T")
-
 MAX_TEXTURES = 12  # of luma, unless more are asked for: players sum all of them for each frame
-OpenActive = Callable[[Footprints, Footprints], contextlib.AbstractContextManager[tuple[ActivePlane, ...]]]
+OpenActive = Callable[[int, Footprints, Footprints], contextlib.AbstractContextManager[tuple[ActivePlane, ...]]]
 CACHE_MAX_BYTES = 4 << 30  # of scratch files, for what passes over frames of moving meshes need again
 THINNED_STEP = 2  # pixels, each way, to one that weights are fitted to: all frames of a group have a part in them
 
@@ -77,8 +74,8 @@ class ClipPlane:
         return 0, rows, 0, columns
 
     @contextlib.contextmanager
-    def open_scales(self, data: FitData, work: Path | None) -> Iterator[Scales]:
-        """Those of a frame of its own, in scratch files."""
+    def open_scales(self, data: FitData, work: Path | None) -> Iterator[tuple[Scales]]:
+        """Of a frame, in scratch files."""
         found = _scales(data, self.settings)
         with contextlib.ExitStack() as opened:
 
@@ -89,7 +86,7 @@ class ClipPlane:
 
             mean, coarse = put(found.mean), put(found.coarse)
             noise = (put(found.mean_noise), put(found.coarse_noise)) if found.soft else (mean, coarse)
-            yield replace(found, mean=mean, coarse=coarse, mean_noise=noise[0], coarse_noise=noise[1])
+            yield (replace(found, mean=mean, coarse=coarse, mean_noise=noise[0], coarse_noise=noise[1]),)
 
 
 @dataclass(frozen=True, eq=False)
@@ -110,7 +107,7 @@ class FramePixels:
     thinned: FitData
     few: bool
     work: Path | None
-    cache: ScratchCache | None
+    cache: ScratchCache
     opened: contextlib.ExitStack
     active: tuple[ActivePlane, ...] | None
 
@@ -123,8 +120,8 @@ class FramePixels:
         data, key = self.fitted(plane), ("scales", self.number, plane.preset.name)
         if data.observations.masks is None and not plane.moves:
             return plane.scales
-        found = _kept(self.cache, key, lambda: plane.open_scales(data, self.work), _bytes_of_scales)
-        return self.opened.enter_context(found)
+        (found,) = self.opened.enter_context(self.cache.open(key, lambda: plane.open_scales(data, self.work)))
+        return found
 
     def weighed(self, data: FitData, variance: float | None) -> contextlib.AbstractContextManager[FitData]:
         """The data, whose pixels count for less where few cameras see them and they are off by far more than a
@@ -174,7 +171,7 @@ class ClipPlan:
         moving: The mesh at each frame; None: it stands still.
         opacity: From the number of a frame to that of its sheets, as a file has it; None: there are none, or it is not
             coded yet.
-        cache: Of what passes need again of each frame; None: they make it anew.
+        cache: Of what passes need again of each frame.
     """
 
     plan: EncodePlan
@@ -185,7 +182,7 @@ class ClipPlan:
     work: Path | None
     moving: MovingMesh | None = None
     opacity: Callable[[int], NDArray[np.float32]] | None = None
-    cache: ScratchCache | None = None
+    cache: ScratchCache = field(default_factory=lambda: ScratchCache(0))
 
     @property
     def cameras(self) -> Sequence[Camera]:
@@ -220,9 +217,7 @@ class ClipPlan:
         if self.moving is None:
             yield self.footprints, self.thinned
             return
-        with _kept(
-            self.cache, ("footprints", number), lambda: self._open_moving(number), _bytes_of_footprints
-        ) as found:
+        with self.cache.open(("footprints", number), lambda: self._open_moving(number)) as found:
             yield found
 
     @contextlib.contextmanager
@@ -249,8 +244,8 @@ class ClipPlan:
 
     @contextlib.contextmanager
     def open_active(self, rest: Path, numbers: range) -> Iterator[OpenActive]:
-        """A function from the footprints of a frame, and the thinned ones, to the part of each plane that changes
-        within a group.
+        """A function from a frame, its footprints and the thinned ones to the part of each plane that changes within a
+        group.
 
         Args:
             rest: The stage of what stands still.
@@ -282,10 +277,12 @@ class ClipPlan:
                 )  # fmt: skip
 
         if self.moving is not None:
-            yield open_planes
+            yield lambda number, every, thinned: self.cache.open(
+                ("active", number), lambda: open_planes(every, thinned)
+            )
         else:
             with open_planes(self.footprints, self.thinned) as planes:
-                yield lambda every, thinned: contextlib.nullcontext(planes)
+                yield lambda number, every, thinned: contextlib.nullcontext(planes)
 
     @contextlib.contextmanager
     def open_photographs(self, frames: int) -> Iterator[KeptPhotographs]:
@@ -311,32 +308,8 @@ class ClipPlan:
             data, changing = FitData(photographs, every), None
             some = opened.enter_context(open_subsampled(data, THINNED_STEP, self.work, thinned))
             if active is not None:
-                cache = None if self.moving is None else self.cache
-                own = _kept(cache, ("active", number), lambda: active(every, thinned), _bytes_of_active)
-                changing = opened.enter_context(own)
+                changing = opened.enter_context(active(number, every, thinned))
             yield FramePixels(number, data, some, self.few, self.work, self.cache, opened, changing)
-
-
-def _kept(
-    cache: ScratchCache | None,
-    key: Hashable,
-    make: Callable[[], contextlib.AbstractContextManager[T]],
-    size: Callable[[T], int],
-) -> contextlib.AbstractContextManager[T]:
-    """As `ScratchCache.open`; made anew where there is no cache."""
-    return make() if cache is None else cache.open(key, make, size)
-
-
-def _bytes_of_footprints(found: tuple[Footprints, ...]) -> int:
-    return sum(one.nbytes for one in found)
-
-
-def _bytes_of_active(found: tuple[ActivePlane, ...]) -> int:
-    return sum(one.footprints.nbytes for one in found)
-
-
-def _bytes_of_scales(found: Scales) -> int:
-    return 2 * (found.mean.nbytes + found.coarse.nbytes)
 
 
 @contextlib.contextmanager

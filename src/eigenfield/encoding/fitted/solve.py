@@ -58,6 +58,12 @@ class Scales:
     usual: float
 
     @property
+    def nbytes(self) -> int:
+        """Of its arrays."""
+        own = self.mean.nbytes + self.coarse.nbytes
+        return 2 * own if self.soft else own
+
+    @property
     def soft(self) -> bool:
         """Whether they are of sheets with an opacity."""
         return self.mean_noise is not self.mean
