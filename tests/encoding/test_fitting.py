@@ -241,7 +241,7 @@ def settings_of(textures: int = 3) -> PlaneSettings:
 def fit_and_code(data: FitData, rounds: int) -> tuple[Plane, float, float]:
     """The coded plane, dB before coding and after."""
     fit = fit_plane(Pixels(data, data, data), settings_of(), "test", Turns(rounds))
-    plane = code_plane(fit, Rate(1e-3, 1e-3, svt_coder(8))).value
+    plane = code_plane(fit, Rate(1e-3, 1e-3, svt_coder(8), svt_coder(8))).value
     return plane, fit.uncoded, coded_psnr(fit, plane)
 
 
@@ -352,7 +352,7 @@ def test_components_that_are_not_worth_their_bytes_are_left_out(world):
     fit = fit_plane(Pixels(data, data, data), settings, "test", Turns(1))
     counts, reached = [], []
     for step in (1e-3, 0.05, 1.0):
-        plane = code_plane(fit, Rate(step, step, svt_coder(8))).value
+        plane = code_plane(fit, Rate(step, step, svt_coder(8), svt_coder(8))).value
         counts.append(sum(basis.count for basis in plane.bases))
         reached.append(coded_psnr(fit, plane))
     assert counts[0] >= 3 and counts[0] > counts[1] >= counts[2] == 0, counts

@@ -47,7 +47,7 @@ def test_as_many_components_are_coded_as_cost_least(made):
     block, scales = made
     counts = []
     for lambda_ in np.geomspace(1e-4, 300, 12):
-        coded = code_block_rd(block, SIZE, scales, Rate(STEP, STEP, FAST), lambda_)
+        coded = code_block_rd(block, SIZE, scales, Rate(STEP, STEP, FAST, FAST), lambda_)
         assert coded.count == np.argmin(costs(block, scales, lambda_))
         counts.append(coded.count)
     assert counts == sorted(counts, reverse=True) and counts[0] == block.count and counts[-1] == 0
@@ -66,9 +66,9 @@ def test_a_faster_coder_only_chooses_the_components(made):
 
 def test_what_a_byte_of_the_mean_takes_off(made):
     _, scales = made
-    assert plane_lambda(scales, Rate(STEP, STEP, FAST)) == pytest.approx(lambda_of_step(STEP) * 10)
+    assert plane_lambda(scales, Rate(STEP, STEP, FAST, FAST)) == pytest.approx(lambda_of_step(STEP) * 10)
     half_seen = Scales.opaque(
         scales.mean * np.tile([0, 1], (SIZE[0], SIZE[1] // 2)).astype(np.float32), scales.coarse, (0, 0)
     )
-    assert plane_lambda(half_seen, Rate(STEP, STEP, FAST)) == pytest.approx(lambda_of_step(STEP) * 10)
-    assert plane_lambda(Scales.opaque(scales.mean * 0, scales.coarse, (0, 0)), Rate(STEP, STEP, FAST)) == 0
+    assert plane_lambda(half_seen, Rate(STEP, STEP, FAST, FAST)) == pytest.approx(lambda_of_step(STEP) * 10)
+    assert plane_lambda(Scales.opaque(scales.mean * 0, scales.coarse, (0, 0)), Rate(STEP, STEP, FAST, FAST)) == 0

@@ -12,8 +12,11 @@ from hypothesis import strategies as st
 import eigenfield as ef
 from eigenfield.coding import stacking
 from eigenfield.coding.pictures.pictures_10bit import (
+    CODER,
     MAX_CODE,
     MIDDLE_CODE,
+    PATIENT_CODER,
+    TRIAL_CODER,
     crf_of,
     decode_10bit,
     encode_10bit,
@@ -55,6 +58,34 @@ def test_a_coarser_quantiser_takes_fewer_bytes_and_errs_more(picture):
         sizes.append(len(coded))
         errors.append(np.square(decode_10bit(coded, False, "here").astype(float) - picture).mean())
     assert sizes[0] > sizes[1] > sizes[2] and errors[0] < errors[1] < errors[2]
+
+
+@pytest.mark.parametrize("coder, at_most", [(CODER, 0.98), (PATIENT_CODER, 0.95)])
+def test_slower_presets_take_fewer_bytes_at_the_same_error(coder, at_most):
+    rng = np.random.default_rng(3)
+    y, x = np.mgrid[:256, :320]
+    discs = 0.3 + x / 1000
+    for _ in range(60):
+        away = np.hypot(y - rng.uniform(0, 256), x - rng.uniform(0, 320)) / rng.uniform(4, 40)
+        discs = np.where(away < 1, 0.5 + 0.4 * np.sin(away * rng.uniform(0, 20) + rng.uniform(0, 6)), discs)
+    codes = np.rint((discs + rng.normal(0, 0.01, discs.shape)) * MAX_CODE).clip(0, MAX_CODE).astype(np.uint16)
+
+    def error(data: bytes) -> float:
+        return float(np.square(decode_10bit(data, False, "discs").astype(float) - codes).mean())
+
+    made = [TRIAL_CODER(codes, crf) for crf in (24, 32, 40)]
+    data = coder(codes, 32)
+    same = np.exp(np.interp(error(data), [error(one) for one in made], [np.log(len(one)) for one in made]))
+    assert len(data) < at_most * same
+
+
+@pytest.mark.parametrize("preset", [8, 2])
+@pytest.mark.parametrize("crf", [1, 8, 20, 32])
+def test_the_error_is_that_of_the_quantiser_asked_for(crf, preset):
+    noise = np.random.default_rng(1).integers(0, MAX_CODE, (64, 64)).astype(np.uint16)
+    off = decode_10bit(encode_10bit(noise, crf, preset), False, "here").astype(float) - noise
+    uniform = encoder_step(crf) / 12**0.5  # its root mean square, of values that are rounded to the step
+    assert uniform < np.square(off).mean() ** 0.5 < 1.8 * uniform
 
 
 @given(st.integers(1, 63))

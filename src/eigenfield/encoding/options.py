@@ -41,7 +41,7 @@ class Preset:
     Attributes:
         quality: 0 to 100.
         rounds: Rounds of fitting textures and weights in turns, at most; captures of few cameras get more.
-        patient: Whether textures are coded by libaom where the machine has it.
+        patient: Whether mean and textures are coded for as few bytes as time buys.
     """
 
     quality: int

@@ -142,12 +142,6 @@ def code_basis(basis: Basis, step: float, coder: Coder) -> CodedBasis:
     return CodedBasis(coded, pictures)
 
 
-def first_pictures(coded: CodedBasis, count: int) -> CodedBasis:
-    """The textures of the first `count` pictures."""
-    pictures = coded.pictures[:count]
-    return CodedBasis(coded.basis.truncate(sum(picture.count for picture in pictures)), pictures)
-
-
 def with_weights(coded: CodedBasis, weights: NDArray[np.float32], payload: Payload) -> CodedBasis:
     """The same coded textures with other weights (Ne, N), and their coded form."""
     return replace(coded, basis=replace(coded.basis, weights=weights), weights=payload)

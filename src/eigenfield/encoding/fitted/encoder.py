@@ -41,8 +41,7 @@ class FittedEncoder:
         """The scene coded at a quality; its settings have placeholders for the PSNR."""
         begin_step(self.progress, "code")
         options = self.plan.options
-        coder = {"coder": "libaom"} if self.fits.patient else {}
-        settings = {"fit": options.fit, "fitted": {"quality": quality, **coder, "psnr": self.fits.psnr_figures()}}
+        settings = {"fit": options.fit, "fitted": {"quality": quality, "psnr": self.fits.psnr_figures()}}
         colours = self.data.observations.colours
         if colours is not None:
             settings["harmonise"] = options.harmonise or EXPOSURE_MODEL

@@ -12,8 +12,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from eigenfield.coding.pictures.aom import aom_program, encode_aom
-from eigenfield.coding.pictures.pictures_10bit import MIN_SIDE_TEXELS, SVT_CODER, encoder_step
+from eigenfield.coding.pictures.pictures_10bit import CODER, MIN_SIDE_TEXELS, PATIENT_CODER, TRIAL_CODER, encoder_step
 from eigenfield.core.appearance import Plane
 from eigenfield.core.payloads import Coded
 from eigenfield.core.progress import Progress
@@ -79,13 +78,12 @@ class PlanePreset:
 
         Args:
             soft: Whether it is on sheets.
-            patient: Whether libaom codes it, which the machine must have.
+            patient: Whether it is coded for as few bytes as time buys.
         """
         mean, texture = self.sheet_steps if soft else (1.0, 1.0)
         mean_step = mean * self.mean_step * self.mean_share * step
         texture_step = texture * self.texture_step * self.texture_share * step
-        coder, trial = (encode_aom, SVT_CODER) if patient else (SVT_CODER, None)
-        return Rate(mean_step, texture_step, coder, trial)
+        return Rate(mean_step, texture_step, PATIENT_CODER if patient else CODER, TRIAL_CODER)
 
 
 _LUMA, _CHROMA = split_matrix()
@@ -174,10 +172,7 @@ def open_fits(
                 pixels, plane.settings(data.size, density, textures, scattered), plane.name, turns, work, progress
             )
 
-        patient = preset.patient and aom_program() is not None
-        if preset.patient:
-            log.info("coded by %s", "libaom" if patient else "SVT-AV1: an ffmpeg program with libaom saves 8 to 10 %")
-        yield Fits(tuple((plane, fit(plane)) for plane in PLANE_PRESETS), patient)
+        yield Fits(tuple((plane, fit(plane)) for plane in PLANE_PRESETS), preset.patient)
 
 
 def step_of(quality: int) -> float:
@@ -201,7 +196,7 @@ def coded_opacity(opacity: NDArray[np.float32], quality: int) -> Coded[NDArray[n
         opacity: (H, W) in 0..1, about a texel for a photograph's pixel.
         quality: 0 to 100.
     """
-    return code_opacity(even_opacity(opacity), OPACITY_STEP * step_of(quality), SVT_CODER)
+    return code_opacity(even_opacity(opacity), OPACITY_STEP * step_of(quality), CODER)
 
 
 def opacity_size(shape: Sequence[int]) -> tuple[int, int]:

@@ -7,14 +7,13 @@ from __future__ import annotations
 
 import logging
 from dataclasses import dataclass, replace
-from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eigenfield.coding.pictures.pictures_10bit import Coder
 from eigenfield.core.appearance import Basis
-from eigenfield.encoding.fitted.code_planes import CodedBasis, code_basis, first_pictures
+from eigenfield.encoding.fitted.code_planes import CodedBasis, code_basis
 from eigenfield.encoding.fitted.model import Block
 from eigenfield.encoding.fitted.solve import Scales
 
@@ -30,13 +29,13 @@ class Rate:
 
     Attributes:
         mean_step: Of the quantiser, in the photographs' range.
-        trial: A faster coder, by which components are chosen; None: the same.
+        trial: A faster coder, by which components are chosen.
     """
 
     mean_step: float
     texture_step: float
     coder: Coder
-    trial: Coder | None = None
+    trial: Coder
 
 
 def plane_lambda(scales: Scales, rate: Rate) -> float:
@@ -50,12 +49,9 @@ def code_block_rd(block: Block, grid: tuple[int, int], scales: Scales, rate: Rat
     The block's rectangle is part of `grid` (rows, columns).
     """
     step = rate.texture_step * _coarsening(scales)
-    coded, errors, sizes = code_on_trial(block, grid, scales, rate)
+    _, errors, sizes = code_on_trial(block, grid, scales, rate)
     count = int(np.argmin(np.cumsum([0.0, *(errors + lambda_ * sizes)])))  # of the strongest
     log.debug("%d of %d components coded", count, block.count)
-    ends = list(accumulate((picture.count for picture in coded.pictures), initial=0))
-    if count == 0 or (count in ends and rate.trial is None):
-        return first_pictures(coded, ends.index(count))
     few = replace(block, textures=block.textures[:count], weights=np.ascontiguousarray(block.weights[:, :count]))
     return code_basis(_basis_of(few, grid), step, rate.coder)
 
@@ -66,7 +62,7 @@ def code_on_trial(
     """All components of a block coded; how each changes the squared error over all cameras, and its bytes with those of
     its weights."""
     step = rate.texture_step * _coarsening(scales)
-    coded = code_basis(_basis_of(block, grid), step, rate.trial or rate.coder)
+    coded = code_basis(_basis_of(block, grid), step, rate.trial)
     return coded, *_effects(coded, block, scales)
 
 
