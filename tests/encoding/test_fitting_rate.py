@@ -6,12 +6,13 @@ import cv2
 import numpy as np
 import pytest
 
-from eigenfield.coding.pictures.pictures_10bit import svt_coder
-from eigenfield.encoding.fitted import rate
+from eigenfield.coding.pictures.pictures_10bit import CODER, PATIENT_CODER, svt_coder
+from eigenfield.encoding.fitted import planes, rate
 from eigenfield.encoding.fitted.code_planes import code_basis
 from eigenfield.encoding.fitted.model import Block
 from eigenfield.encoding.fitted.rate import Rate, code_block_rd, lambda_of_step, plane_lambda
 from eigenfield.encoding.fitted.solve import Scales
+from eigenfield.encoding.options import PRESETS
 
 SIZE, CAMERAS, STEP = (48, 64), 8, 0.03
 FAST = svt_coder(8)
@@ -72,3 +73,17 @@ def test_what_a_byte_of_the_mean_takes_off(made):
     )
     assert plane_lambda(half_seen, Rate(STEP, STEP, FAST, FAST)) == pytest.approx(lambda_of_step(STEP) * 10)
     assert plane_lambda(Scales.opaque(scales.mean * 0, scales.coarse, (0, 0)), Rate(STEP, STEP, FAST, FAST)) == 0
+
+
+def test_before_cameras_in_no_array_only_the_components_of_chroma_are_coarser():
+    for plane in planes.PLANE_PRESETS:
+        array, scattered = plane.rate(STEP), plane.rate(STEP, scattered=True)
+        assert scattered.mean_step == array.mean_step
+        assert (scattered.texture_step > array.texture_step) == (plane.name == "chroma")
+        assert plane.rate(STEP, soft=True, scattered=True) == plane.rate(STEP, soft=True)
+
+
+def test_the_best_preset_alone_is_patient():
+    assert [name for name, preset in PRESETS.items() if preset.patient] == ["best"]
+    for plane in planes.PLANE_PRESETS:
+        assert plane.rate(STEP).coder is CODER and plane.rate(STEP, patient=True).coder is PATIENT_CODER

@@ -51,15 +51,15 @@ STEPS = {  # by the name with which a step begins
     "maps": StepCost("texture maps", 5, 0.7, stages={"texture maps": 1}),
     "fit": StepCost("fit", 5, 1.5, stages={"fit luma": 1, "fit chroma": 1}),
     "code": StepCost(
-        "coding", 6, 0.4, stages={"code luma": 60, "code chroma": 20, "photographs": 12, "code textures": 8}
+        "coding", 6, 0.6, stages={"code luma": 60, "code chroma": 20, "photographs": 12, "code textures": 8}
     ),
 }
 FEW_VIEWS = {  # of below SUBSAMPLE_MIN_OBSERVATIONS: more rounds, and all pixels
     "mesh": StepCost("mesh", 10, of_root=6),
     "fit": StepCost("fit", 5, of_root=26),
-    "code": StepCost("coding", 4, of_root=12),
+    "code": StepCost("coding", 4, of_root=18),
 }
-AROUND = {"code": StepCost("coding", 6, 1.2)}  # of more views that look around: their textures are rotated
+AROUND = {"code": StepCost("coding", 6, 1.8)}  # of more views that look around: their textures are rotated
 TEXTURE_MAPS = {"mesh": StepCost("mesh", 5)}  # without a fit: its surface and triangles stay as they are
 DENSE_TRIAL = StepCost("trial of layers", 20)  # which ends with the fewest layers, as a rule
 LAYERED = {"layers": STEPS["layers"], "mesh": StepCost("mesh", 10, 28), "fit": StepCost("fit", 5, 30)}
