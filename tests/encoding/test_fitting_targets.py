@@ -72,7 +72,7 @@ def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, mo
     cameras = row_grid(9, 64, 56)
     folder = write_capture(tmp_path / "relief", cameras, relief(cameras[4], 0.5, False))
     capture, options = open_capture(folder), {"proxy": folder / "proxy.ply", "textures": 2, "density": 1.5}
-    asked = Target(psnr=26)
+    asked = Target(psnr=25)
     with caplog.at_level("INFO", "eigenfield.encode"):
         monkeypatch.setattr("eigenfield.encoding.reach_target.REFIT_MIN_MESH_RATIO", 0.1)
         once = ef.encode(capture, **options, target=asked)
@@ -85,7 +85,7 @@ def test_a_target_far_from_the_preset_has_a_mesh_of_its_own(tmp_path, caplog, mo
     assert 0 < meshes[0] < meshes[1]
     sizes = [len(encode_scene(scene)) for scene in (found, once)]
     assert sizes[0] < sizes[1]
-    assert evaluate(found, capture)["image"]["encoded"]["psnr"] >= 26
+    assert evaluate(found, capture)["image"]["encoded"]["psnr"] >= 25
     caplog.clear()
     ef.encode(capture, **options, target=Target(size=1200))
     assert caplog.text.count("fitted again") <= caplog.text.count("1200 bytes cannot be reached") == 1
