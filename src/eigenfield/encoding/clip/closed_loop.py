@@ -40,7 +40,7 @@ from eigenfield.encoding.fitted.fit import (
 )
 from eigenfield.encoding.fitted.model import Block, PlaneModel
 from eigenfield.encoding.fitted.passes import psnr_of
-from eigenfield.encoding.fitted.rate import code_on_trial, plane_lambda
+from eigenfield.encoding.fitted.rate import effects_on_trial, plane_lambda
 from eigenfield.encoding.fitted.solve import fit_textures, residual
 from eigenfield.encoding.fitted.tied_weights import weight_equations
 
@@ -57,7 +57,7 @@ def texture_counts(clip: ClipPlan, opened: OpenGroup) -> tuple[int, ...]:
     for arrays in islice(opened.frames, 0, None, TRIAL_EVERY):
         for number, plane in enumerate(clip.planes):
             block = Block(plane.rectangle, arrays[f"textures{number}"], opened.weights[number].weights)
-            _, errors, sizes = code_on_trial(block, plane.settings.grid, plane.scales, plane.rate)
+            errors, sizes = effects_on_trial(block, plane.settings.grid, plane.scales, plane.rate)
             totals[number] += errors + plane_lambda(plane.scales, plane.rate) * FILM_BYTES_RATIO * sizes
     return tuple(max(1, int(np.argmin(np.cumsum([0.0, *total])))) for total in totals)
 

@@ -201,10 +201,8 @@ class ClipPlan:
 
     def at_quality(self, quality: int) -> ClipPlan:
         """The same coded at another quality, 0 to 100."""
-        step = step_of(quality)
-        rates = [one.preset.rate(step, scattered=one.settings.scattered) for one in self.planes]
-        pairs = zip(self.planes, rates, strict=True)
-        return replace(self, planes=tuple(replace(one, rate=rate) for one, rate in pairs))
+        planes = [replace(one, rate=one.preset.rate(step_of(quality))) for one in self.planes]
+        return replace(self, planes=tuple(planes))
 
     def layout(self, counts: Sequence[int]) -> FilmLayout:
         """Where so many eigen textures of each plane, its mean and the opacity of sheets lie in films. OptionError
@@ -343,7 +341,7 @@ def open_clip_plan(
             settings = preset.settings(size, density or plan.density, textures, views.scattered)
             settings = replace(settings, textures=max(1, min(settings.textures, count - 1)), local=0)
             composer = make_composer(footprints.surface, settings.grey_model())
-            rate, scales = preset.rate(step, scattered=settings.scattered), _scales(whole, settings)
+            rate, scales = preset.rate(step), _scales(whole, settings)
             return ClipPlane(preset, settings, rate, scales, composer, moving is not None)
 
         planes = tuple(map(plane_of, PLANE_PRESETS))

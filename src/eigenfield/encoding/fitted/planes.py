@@ -46,7 +46,7 @@ class PlanePreset:
         ahead: Densities are as if the atlas had so many texels a pixel more, up to FIT_MAX_DENSITY.
         sheet_steps: Factors of the steps of mean and components on sheets, which share a pixel; chosen on Boxes, and
             tried on Fern.
-        scattered_steps: Likewise on a surface before cameras in no array; chosen on Temple and Cube.
+        scattered_step: Factor of the components' step before cameras in no array; chosen on Temple and Cube.
     """
 
     name: str
@@ -59,7 +59,7 @@ class PlanePreset:
     subsampled: bool
     ahead: float
     sheet_steps: tuple[float, float]
-    scattered_steps: tuple[float, float]
+    scattered_step: float
 
     def settings(self, size: tuple[int, int], density: float, textures: int, scattered: bool) -> PlaneSettings:
         """What the plane of a fit is to be.
@@ -83,7 +83,7 @@ class PlanePreset:
             scattered: As in `PlaneSettings`.
             patient: Whether it is coded for as few bytes as time buys.
         """
-        mean, texture = self.sheet_steps if soft else self.scattered_steps if scattered else (1.0, 1.0)
+        mean, texture = self.sheet_steps if soft else (1.0, self.scattered_step if scattered else 1.0)
         mean_step = mean * self.mean_step * self.mean_share * step
         texture_step = texture * self.texture_step * self.texture_share * step
         return Rate(mean_step, texture_step, PATIENT_CODER if patient else CODER, TRIAL_CODER)
@@ -91,8 +91,8 @@ class PlanePreset:
 
 _LUMA, _CHROMA = split_matrix()
 PLANE_PRESETS = (
-    PlanePreset("luma", _LUMA, 1.0, TEXTURE_DENSITY_RATIO, 1.0, 0.85, 0.7, False, 0.0, (0.7, 1.0), (1.0, 1.0)),
-    PlanePreset("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2, (0.8, 8.0), (1.0, 1.5)),
+    PlanePreset("luma", _LUMA, 1.0, TEXTURE_DENSITY_RATIO, 1.0, 0.85, 0.7, False, 0.0, (0.7, 1.0), 1.0),
+    PlanePreset("chroma", _CHROMA, 0.5, 0.3, 0.25, 2.0, 0.95, True, 0.2, (0.8, 8.0), 1.5),
 )
 OPACITY_STEP = 2.0  # quantiser step of the opacity, of `step_of`; chosen on Fern
 HALF_GREY_LEVEL = 0.002  # in the photographs' range

@@ -49,21 +49,20 @@ def code_block_rd(block: Block, grid: tuple[int, int], scales: Scales, rate: Rat
     The block's rectangle is part of `grid` (rows, columns).
     """
     step = rate.texture_step * _coarsening(scales)
-    _, errors, sizes = code_on_trial(block, grid, scales, rate)
+    errors, sizes = effects_on_trial(block, grid, scales, rate)
     count = int(np.argmin(np.cumsum([0.0, *(errors + lambda_ * sizes)])))  # of the strongest
     log.debug("%d of %d components coded", count, block.count)
     few = replace(block, textures=block.textures[:count], weights=np.ascontiguousarray(block.weights[:, :count]))
     return code_basis(_basis_of(few, grid), step, rate.coder)
 
 
-def code_on_trial(
+def effects_on_trial(
     block: Block, grid: tuple[int, int], scales: Scales, rate: Rate
-) -> tuple[CodedBasis, NDArray[np.float64], NDArray[np.float64]]:
-    """All components of a block coded; how each changes the squared error over all cameras, and its bytes with those of
-    its weights."""
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """How each component of a block, coded on trial, changes the squared error over all cameras, and its bytes with
+    those of its weights."""
     step = rate.texture_step * _coarsening(scales)
-    coded = code_basis(_basis_of(block, grid), step, rate.trial)
-    return coded, *_effects(coded, block, scales)
+    return _effects(code_basis(_basis_of(block, grid), step, rate.trial), block, scales)
 
 
 def _coarsening(scales: Scales) -> float:
